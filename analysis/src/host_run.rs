@@ -56,8 +56,9 @@ impl BesideHost {
         controller: &'c mut dyn Controller,
         output: OutputTiming,
     ) -> Result<HostedServo<'c>, HostError> {
-        let budget = if self.has_tank { self.budget } else { unlimited(&self.budget) };
         let Self { scene, transducers, .. } = self;
+        let open = unlimited(&self.budget, scene.timing.period);
+        let budget = if self.has_tank { self.budget } else { open };
         let kind = (self.format, self.stores);
         HostedServo::new(Box::new(controller), &budget, scene, transducers, output, kind)
     }

@@ -138,7 +138,8 @@ impl<N: Number, D: DelayLine<N>, const LAGS: usize, const UPDATES: bool> Couplin
         };
         let mut deflection = arriving.times(self.arriving);
         if self.torques.due().is_some() {
-            deflection = deflection.plus(self.torques.sum().times(self.held));
+            let waiting = self.torques.waiting().iter().fold(N::ZERO, |sum, next| sum.plus(*next));
+            deflection = deflection.plus(waiting.times(self.held));
         }
         for trail in &mut self.trails {
             deflection = deflection.plus(trail.torque.times(trail.gain));

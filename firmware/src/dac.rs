@@ -44,6 +44,12 @@ impl DacCode {
         Self(bits & Self::MAX.0)
     }
 
+    /// The code with a torque of so many codes beside it, which are together within full scale.
+    #[inline(always)]
+    pub const fn beside(self, codes: i32) -> Self {
+        Self::from_low_bits(self.0.wrapping_add(codes as u16))
+    }
+
     /// The code as a number for the DAC.
     #[inline(always)]
     pub const fn get(self) -> u16 {

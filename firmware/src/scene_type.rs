@@ -422,7 +422,7 @@ macro_rules! scene_type {
                 const HOST: Option<HostTorque> = OF_HOST;
                 type Host = Either<
                     { OF_HOST.is_some() },
-                    Hosted<{ TIMES.ticks }, { TIMES.is_plain }>,
+                    Hosted<{ TIMES.ticks }, { !TIMES.is_plain as usize }>,
                     NoHost,
                 >;
                 type Budget = <Self::Host as BesideServo>::Budget;

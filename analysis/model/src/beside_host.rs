@@ -1,6 +1,10 @@
 //! Whether a certified scene may have a host that adds torques, and what the host may do, in words.
 
+use std::f64::consts::TAU;
+
+use haptic_servo::dac::DacCode;
 use haptic_servo::host::{HostError, HostResponse, HostTorque, Sampling};
+use haptic_servo::servo::Transducers;
 
 use crate::file::SceneFile;
 use crate::quantity::rounded_down;
@@ -18,9 +22,15 @@ pub fn check(
     for margin in margins {
         host.check_share(margin)?;
     }
-    let count = file.encoder_step.unwrap_or(0.0);
-    let sampling = Sampling::simultaneous(&file.scene.timing, count);
+    let sampling = sampling(file);
     HostResponse::of(host, &file.scene.latency, &sampling).map(drop)
+}
+
+/// How a file's servo reads positions and gives torques, each at its count.
+pub fn sampling(file: &SceneFile) -> Sampling {
+    let Transducers { counts_per_turn, full_scale_torque, .. } = file.transducers(None, None);
+    let code = full_scale_torque / f64::from(DacCode::CODES_TO_FULL_SCALE);
+    Sampling::simultaneous(&file.scene.timing, TAU / counts_per_turn, code)
 }
 
 /// What the host may do.

@@ -36,9 +36,6 @@ pub trait Controller {
     /// # Errors
     /// If the number format does not hold the angle.
     fn tick_at(&mut self, angle: f64) -> Result<f64, OutOfRange>;
-
-    /// The code of the last tick with a host's torque in N m beside the scene's.
-    fn code_beside(&self, torque: f32) -> u16;
 }
 
 impl<E: Rendering<N>, N: Number> Controller for Servo<E, N> {
@@ -57,10 +54,6 @@ impl<E: Rendering<N>, N: Number> Controller for Servo<E, N> {
     fn tick_at(&mut self, angle: f64) -> Result<f64, OutOfRange> {
         Servo::tick_at(self, angle)
     }
-
-    fn code_beside(&self, torque: f32) -> u16 {
-        Servo::code_beside(self, N::of_single(torque)).get()
-    }
 }
 
 impl<C: Controller + ?Sized> Controller for &mut C {
@@ -70,10 +63,6 @@ impl<C: Controller + ?Sized> Controller for &mut C {
 
     fn tick_at(&mut self, angle: f64) -> Result<f64, OutOfRange> {
         (**self).tick_at(angle)
-    }
-
-    fn code_beside(&self, torque: f32) -> u16 {
-        (**self).code_beside(torque)
     }
 }
 

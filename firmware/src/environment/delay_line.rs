@@ -2,9 +2,8 @@
 
 use super::MAX_DELAY;
 use crate::build_error::BuildError;
-use crate::number::Number;
 
-/// The torques of the last ticks that are not due yet.
+/// The torques of the last ticks that are not due yet, or other values.
 pub trait DelayLine<N>: Clone + core::fmt::Debug + Sized {
     /// A line full of zeros.
     ///
@@ -13,8 +12,8 @@ pub trait DelayLine<N>: Clone + core::fmt::Debug + Sized {
     fn at_rest(delay: usize) -> Result<Self, BuildError>;
     /// The torque that is due in this tick; `None` without a delay.
     fn due(&self) -> Option<N>;
-    /// The sum of the torques.
-    fn sum(&self) -> N;
+    /// The torques, the oldest first.
+    fn waiting(&self) -> &[N];
     /// Stores this tick's torque and drops the oldest.
     fn push(&mut self, torque: N);
     /// Fills it with one torque.
@@ -35,12 +34,14 @@ impl<N: Copy, const DELAY: usize> FixedDelay<N, DELAY> {
     }
 }
 
-impl<N: Number, const DELAY: usize> DelayLine<N> for FixedDelay<N, DELAY> {
+impl<N: Copy + Default + core::fmt::Debug, const DELAY: usize> DelayLine<N>
+    for FixedDelay<N, DELAY>
+{
     fn at_rest(delay: usize) -> Result<Self, BuildError> {
         if delay != DELAY {
             return Err(BuildError::Structure);
         }
-        Ok(Self { oldest_first: [N::ZERO; DELAY] })
+        Ok(Self::full_of(N::default()))
     }
 
     #[inline(always)]
@@ -49,8 +50,8 @@ impl<N: Number, const DELAY: usize> DelayLine<N> for FixedDelay<N, DELAY> {
     }
 
     #[inline(always)]
-    fn sum(&self) -> N {
-        self.oldest_first.iter().fold(N::ZERO, |sum, torque| sum.plus(*torque))
+    fn waiting(&self) -> &[N] {
+        &self.oldest_first
     }
 
     #[inline(always)]
@@ -70,21 +71,20 @@ pub struct VariableDelay<N> {
     delay: usize,
 }
 
-impl<N: Number> DelayLine<N> for VariableDelay<N> {
+impl<N: Copy + Default + core::fmt::Debug> DelayLine<N> for VariableDelay<N> {
     fn at_rest(delay: usize) -> Result<Self, BuildError> {
         if delay > MAX_DELAY {
             return Err(BuildError::Delay { delay, largest: MAX_DELAY });
         }
-        Ok(Self { oldest_first: [N::ZERO; MAX_DELAY], delay })
+        Ok(Self { oldest_first: [N::default(); MAX_DELAY], delay })
     }
 
     fn due(&self) -> Option<N> {
         if self.delay == 0 { None } else { self.oldest_first.first().copied() }
     }
 
-    fn sum(&self) -> N {
-        let used = self.oldest_first.iter().take(self.delay);
-        used.fold(N::ZERO, |sum, torque| sum.plus(*torque))
+    fn waiting(&self) -> &[N] {
+        self.oldest_first.get(..self.delay).unwrap_or(&[])
     }
 
     fn push(&mut self, torque: N) {

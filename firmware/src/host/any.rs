@@ -3,20 +3,19 @@
 use super::{BesideServo, HostError, HostTimes, HostTorque, HostWords, Hosted, Reported};
 use super::{ServoNumbers, Taken, TickState};
 use crate::current::HeatStep;
-use crate::number::Number;
 use crate::output_timing::OutputTiming;
 
 /// A host beside a servo, of any of the types that [`Hosted`] has in programs, to the bit.
 #[derive(Clone, Debug)]
 pub enum AnyHosted {
     /// A torque is put out at its count.
-    Prompt(Hosted<0, true>),
+    Prompt(Hosted<0, 0>),
     /// The same with a delay or a lag.
-    PromptLagging(Hosted<0, false>),
+    PromptLagging(Hosted<0, 1>),
     /// A torque is put out at the next count.
-    Latched(Hosted<1, true>),
+    Latched(Hosted<1, 0>),
     /// The same with a lag.
-    LatchedLagging(Hosted<1, false>),
+    LatchedLagging(Hosted<1, 1>),
 }
 
 macro_rules! each {
@@ -31,11 +30,6 @@ macro_rules! each {
 }
 
 impl AnyHosted {
-    /// Torque in N m that the host wants in the present tick.
-    pub fn wanted(&self) -> f32 {
-        each!(self, hosted => hosted.wanted())
-    }
-
     /// Level of the tank in J.
     pub fn energy(&self) -> f64 {
         each!(self, hosted => hosted.energy())
@@ -64,8 +58,16 @@ impl BesideServo for AnyHosted {
         })
     }
 
-    fn tick<N: Number>(&mut self, moved: i32) -> (N, bool) {
-        each!(self, hosted => hosted.tick(moved))
+    fn begin(&mut self) {
+        each!(self, hosted => hosted.begin());
+    }
+
+    fn wanted(&self) -> i32 {
+        each!(self, hosted => hosted.wanted())
+    }
+
+    fn refused(&mut self, moved: i32) -> i32 {
+        each!(self, hosted => hosted.refused(moved))
     }
 
     fn host(budget: &HostTorque) -> Option<HostTorque> {
@@ -126,31 +128,31 @@ impl BesideServo for AnyHosted {
     }
 
     fn send(channel: &HostWords, number: u16, torque: f32, ramp: u16) {
-        Hosted::<0, true>::send(channel, number, torque, ramp);
+        Hosted::<0, 0>::send(channel, number, torque, ramp);
     }
 
     fn report(channel: &HostWords, reported: &mut Reported) -> Option<Taken> {
-        Hosted::<0, true>::report(channel, reported)
+        Hosted::<0, 0>::report(channel, reported)
     }
 
     fn ask(reported: &mut Reported, id: u16, budget: HostTorque) {
-        Hosted::<0, true>::ask(reported, id, budget);
+        Hosted::<0, 0>::ask(reported, id, budget);
     }
 
     fn asking(reported: &Reported) -> Option<u16> {
-        Hosted::<0, true>::asking(reported)
+        Hosted::<0, 0>::asking(reported)
     }
 
     fn asked(reported: &mut Reported) -> Option<(u16, HostTorque)> {
-        Hosted::<0, true>::asked(reported)
+        Hosted::<0, 0>::asked(reported)
     }
 
     fn request_budget(reported: &mut Reported) {
-        Hosted::<0, true>::request_budget(reported);
+        Hosted::<0, 0>::request_budget(reported);
     }
 
     fn is_budget_due(reported: &mut Reported) -> bool {
-        Hosted::<0, true>::is_budget_due(reported)
+        Hosted::<0, 0>::is_budget_due(reported)
     }
 
     #[cfg(feature = "wire")]

@@ -1,15 +1,17 @@
 //! The host beside a servo: its tank in the tick, and its commands and reports below the tick.
 
 use core::fmt;
+use core::hint::cold_path;
 
 use super::channel::{HostChannel, HostWords};
 use super::stream::Stream;
+use super::tank::STEP_BITS;
 use super::{HostError, HostResponse, HostTorque, Tank};
 use crate::build_error::BuildError;
 use crate::current::{HeatStep, MAY_HAVE_BRIDGE};
 use crate::environment::FixedDelay;
 use crate::latency::Latency;
-use crate::number::{Format, Number};
+use crate::number::Format;
 use crate::output_timing::OutputTiming;
 use crate::scene::{Scene, Timing};
 use crate::servo::RenderingOptions;
@@ -148,9 +150,13 @@ pub trait BesideServo: Clone + fmt::Debug {
     fn host(budget: &Self::Budget) -> Option<HostTorque>;
     /// A budget from data.
     fn budget(host: HostTorque) -> Self::Budget;
-    /// Ends a tick in which the position moved by so many counts; returns the host's torque in N m, and
-    /// whether it is less than wanted.
-    fn tick<N: Number>(&mut self, moved: i32) -> (N, bool);
+    /// Begins a tick.
+    fn begin(&mut self);
+    /// The torque in codes of the DAC that the host wants in this tick.
+    fn wanted(&self) -> i32;
+    /// Ends the tick before, in which the position moved by so many counts; returns the codes that the host wants
+    /// and does not get.
+    fn refused(&mut self, moved: i32) -> i32;
     /// A tick that is not a usual one; unless the host may give a torque in it, it wants none until the next
     /// command.
     fn wait(&mut self, may_give: bool);
@@ -158,10 +164,9 @@ pub trait BesideServo: Clone + fmt::Debug {
     fn fade_out(&mut self, steps: u32);
     /// Whether the host wants no torque and gives none.
     fn is_at_rest(&self) -> bool;
-    /// Whether this host may be replaced by another: the energy that is left pays for the torques under way
-    /// at the other's price, too.
+    /// Whether this host may be replaced by another: no torque is under way.
     fn may_pass_to(&self, next: &Self) -> bool;
-    /// Takes the level and the torques under way of the host before, which may pass to this one.
+    /// Takes the level of the host before, which may pass to this one.
     fn take_over(&mut self, last: &Self);
     /// The amplifier was switched off; because of a fault, whose end of the torque no model knows, the tank
     /// is empty.
@@ -249,8 +254,16 @@ impl BesideServo for NoHost {
     fn budget(_: HostTorque) {}
 
     #[inline(always)]
-    fn tick<N: Number>(&mut self, _: i32) -> (N, bool) {
-        (N::ZERO, false)
+    fn begin(&mut self) {}
+
+    #[inline(always)]
+    fn wanted(&self) -> i32 {
+        0
+    }
+
+    #[inline(always)]
+    fn refused(&mut self, _: i32) -> i32 {
+        0
     }
 
     #[inline(always)]
@@ -342,17 +355,13 @@ impl HostTimes {
     }
 }
 
-/// A host with a tank in `f32`. A command acts `TICKS` whole ticks after its count; if `IS_PLAIN`, it acts
-/// in one tick only.
+/// A host with its tank. A command acts `TICKS` whole ticks after its count, and in
+/// one tick only unless there are `LAGS`.
 #[derive(Clone, Debug)]
-pub struct Hosted<const TICKS: usize, const IS_PLAIN: bool> {
-    tank: Tank<f32, FixedDelay<f32, TICKS>, IS_PLAIN>,
+pub struct Hosted<const TICKS: usize, const LAGS: usize> {
+    tank: Tank<FixedDelay<i64, TICKS>, LAGS>,
     stream: Stream,
-    given: f32,
-    /// J for a level of 1.
-    joules: f32,
-    reserve: f32,
-    /// Ticks per N m in which the torque fades out at one step of the scene's limit in a tick.
+    /// Ticks per code in which the torque fades out at one step of the scene's limit in a tick.
     fade: f32,
     /// The number of the last command.
     taken: u32,
@@ -363,37 +372,33 @@ pub struct Hosted<const TICKS: usize, const IS_PLAIN: bool> {
     heat: [HeatLevel; MAY_HAVE_BRIDGE as usize],
 }
 
-/// The largest torque in N m beside a bridge.
+/// The largest torque beside a bridge, in steps as the [`Stream`].
 #[derive(Clone, Copy, Debug)]
 struct HeatLevel {
     /// At its present heat.
-    now: f32,
+    now: i32,
     /// While it is cold.
-    cold: f32,
+    cold: i32,
 }
 
-impl<const TICKS: usize, const IS_PLAIN: bool> Hosted<TICKS, IS_PLAIN> {
-    /// Torque in N m that the host wants in the present tick.
-    pub(super) const fn wanted(&self) -> f32 {
-        self.stream.wanted
-    }
-
+impl<const TICKS: usize, const LAGS: usize> Hosted<TICKS, LAGS> {
     /// Level of the tank in J.
     pub(super) fn energy(&self) -> f64 {
         self.tank.energy()
     }
 
-    /// Gives what the level pays of a torque.
+    /// Gives what the level pays of the wanted torque; returns the rest.
     #[cold]
     #[inline(never)]
-    fn refuse(&mut self, wanted: f32) -> f32 {
-        self.given = self.tank.allowed(wanted);
-        self.tank.give(self.given);
-        self.given
+    fn refuse(&mut self) -> i32 {
+        let wanted = self.wanted();
+        let given = self.tank.allowed(wanted);
+        self.tank.give(given);
+        wanted - given
     }
 }
 
-impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_PLAIN> {
+impl<const TICKS: usize, const LAGS: usize> BesideServo for Hosted<TICKS, LAGS> {
     #[cfg(feature = "wire")]
     type IfPresent<T: serde::Serialize + serde::de::DeserializeOwned> = T;
     type Channel = HostWords;
@@ -405,31 +410,25 @@ impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_
         let nothing =
             HostTorque { energy: 0.0, power: 0.0, damping: 0.0, torque: 0.0, timeout: 0.0 };
         Self {
-            tank: Tank::empty(FixedDelay::full_of(0.0), FixedDelay::full_of(0.0)),
+            tank: Tank::empty(FixedDelay::full_of(0)),
             stream: Stream::new(&nothing, 1.0),
-            given: 0.0,
-            joules: 0.0,
-            reserve: 0.0,
             fade: 0.0,
             taken: 0,
             invalid: 0,
             unknown: 0,
-            heat: [HeatLevel { now: 0.0, cold: 0.0 }; MAY_HAVE_BRIDGE as usize],
+            heat: [HeatLevel { now: 0, cold: 0 }; MAY_HAVE_BRIDGE as usize],
         }
     }
 
     fn beside(host: &HostTorque, servo: &ServoNumbers<'_>) -> Result<Self, HostError> {
-        let times = HostTimes { ticks: TICKS, is_plain: IS_PLAIN };
+        let times = HostTimes { ticks: TICKS, is_plain: LAGS == 0 };
         let response = HostResponse::beside(host, servo, times)?;
-        let (count, period) = (servo.radians_per_count, servo.timing.period);
-        let tank = Tank::new(host, &response, count, [count, 1.0])?;
-        let [joules, reserve] = tank.joules().map(|number| number as f32);
-        let stream = Stream::new(host, period);
-        let fade = (servo.fade / period / host.torque) as f32;
-        // Rounded towards zero, so that it is never above the largest torque.
-        let cold = f32::bound_from_f64(host.torque).unwrap_or(0.0);
+        let period = response.period;
+        let fade = (servo.fade / period * response.code / host.torque) as f32;
+        let tank = Tank::new(host, &response)?;
+        let cold = tank.largest() << STEP_BITS;
         let heat = [HeatLevel { now: cold, cold }; MAY_HAVE_BRIDGE as usize];
-        Ok(Self { tank, stream, joules, reserve, fade, heat, ..Self::silent() })
+        Ok(Self { tank, stream: Stream::new(host, period), fade, heat, ..Self::silent() })
     }
 
     fn host(budget: &HostTorque) -> Option<HostTorque> {
@@ -441,16 +440,26 @@ impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_
     }
 
     #[inline(always)]
-    fn tick<N: Number>(&mut self, moved: i32) -> (N, bool) {
-        self.tank.book(moved as f32);
-        let wanted = self.stream.next();
+    fn begin(&mut self) {
+        self.stream.advance();
+    }
+
+    #[inline(always)]
+    fn wanted(&self) -> i32 {
+        self.stream.wanted()
+    }
+
+    #[inline(always)]
+    fn refused(&mut self, moved: i32) -> i32 {
+        self.tank.book(moved);
+        let wanted = self.wanted();
         let cost = self.tank.cost(wanted);
         if !self.tank.pays(cost) {
-            return (N::of_single(self.refuse(wanted)), true);
+            cold_path();
+            return self.refuse();
         }
         self.tank.give_at(wanted, cost);
-        self.given = wanted;
-        (N::of_single(wanted), false)
+        0
     }
 
     fn wait(&mut self, may_give: bool) {
@@ -464,18 +473,18 @@ impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_
     }
 
     fn fade_out(&mut self, steps: u32) {
-        let ticks = self.stream.wanted.abs() * self.fade / steps as f32;
+        let ticks = self.stream.wanted().abs() as f32 * self.fade / steps as f32;
         // The cast saturates.
         self.stream.fade((ticks as u32).saturating_add(1));
     }
 
     fn is_at_rest(&self) -> bool {
-        self.stream.is_at_rest() && self.given == 0.0
+        self.stream.is_at_rest() && self.tank.given() == 0
     }
 
-    fn may_pass_to(&self, next: &Self) -> bool {
+    fn may_pass_to(&self, _: &Self) -> bool {
         // Of an amplifier that was just switched off no tail is known.
-        self.unknown == 0 && next.tank.pays_for(&self.tank)
+        self.unknown == 0 && self.tank.is_over()
     }
 
     #[inline(never)]
@@ -483,7 +492,8 @@ impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_
         self.tank.take_over(&last.tank);
         (self.taken, self.invalid) = (last.taken, last.invalid);
         for (heat, last) in self.heat.iter_mut().zip(&last.heat) {
-            heat.now = (last.now / last.cold * heat.cold).min(heat.cold);
+            let cold = i64::from(last.cold).max(1);
+            heat.now = (i64::from(last.now) * i64::from(heat.cold) / cold) as i32;
         }
     }
 
@@ -491,10 +501,9 @@ impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_
     #[inline(never)]
     fn cut(&mut self, by_fault: bool) {
         self.stream.rest();
-        self.given = 0.0;
         self.unknown = UNKNOWN;
         self.tank.give_back(false);
-        self.tank.forget(FixedDelay::full_of(0.0), by_fault);
+        self.tank.forget(FixedDelay::full_of(0), by_fault);
     }
 
     fn drain(&mut self) {
@@ -505,9 +514,12 @@ impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_
     fn step_by_heat(&mut self, step: HeatStep) -> bool {
         let Some(heat) = self.heat.first_mut() else { return false };
         // As many ticks from end to end as the scene's limit takes; down from the present torque, so that each acts.
-        let (most, change) = (heat.now.min(self.stream.largest()), 1.0 / self.fade);
+        let most = heat.now.min(self.stream.largest());
+        // Of a fade at once, too: the cast saturates.
+        let change = ((1 << STEP_BITS) as f32 / self.fade) as i32;
+        let change = change.clamp(1, heat.cold.max(1));
         heat.now = match step {
-            HeatStep::Lower => (most - change).max(0.0),
+            HeatStep::Lower => (most - change).max(0),
             HeatStep::Raise => (heat.now + change).min(heat.cold),
         };
         self.stream.limit(heat.now);
@@ -527,24 +539,26 @@ impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_
         }
         let is_hot = self.heat.iter().any(|heat| heat.now < heat.cold);
         let is_open = tick.opening == Some(0) && !is_hot;
-        let wanted = if is_open { self.stream.wanted } else { torque };
-        let refused = wanted - self.given;
+        let wanted = if is_open { self.stream.wanted() } else { torque };
+        let given = self.tank.given();
+        let [refused, given] = [wanted - given, given].map(|codes| codes as f32 * self.tank.code());
         channel.publish(
             sent,
             [
                 rest & 0xffff,
                 tick.tick,
                 tick.count.cast_unsigned(),
-                (self.tank.level() * self.joules + self.reserve).to_bits(),
-                self.given.to_bits(),
+                self.tank.rounded_energy().to_bits(),
+                given.to_bits(),
                 refused.to_bits(),
                 tick.state,
                 u32::from(self.invalid),
             ],
         );
         if let Some(opening) = tick.opening {
-            let limited = |torque: f32, heat: &HeatLevel| torque.max(-heat.now).min(heat.now);
-            let torque = self.heat.iter().fold(torque, limited);
+            let codes = |heat: &HeatLevel| heat.now >> STEP_BITS;
+            let limited = |torque: i32, most: i32| torque.clamp(-most, most);
+            let torque = self.heat.iter().map(codes).fold(torque, limited);
             self.stream.take(torque, (rest >> 16) as u16, opening);
         }
     }

@@ -23,7 +23,16 @@ sentences! {
     /// The bound is the error that the encoder's counts can cause.
     Energy { energy: f64, least: f64 } => (
         "the host's energy is " {energy} " J, and must be above " {least} " J, which the error of the \
-         encoder's counts can take at the host's largest torque: lower the torque, or take a finer encoder"),
+         encoder's counts can take at this motor's torque: raise the energy, or take a finer encoder"),
+    MostEnergy { energy: f64, most: f64 } => (
+        "the host's energy is " {energy} " J, and must be at most " {most} " J, the most that the tank counts in \
+         steps of this motor's torque: lower the energy"),
+    Torque { torque: f64, least: f64 } => (
+        "the host's largest torque is " {torque} " N m, and must be at least " {least} " N m, a code of the DAC"),
+    /// The bounds are the steps of a torque in which the tank counts.
+    Steps { damping: f64, least: f64, most: f64 } => (
+        "the host's share of damping is " {damping} " N m s/rad, and must be at least " {least} " N m s/rad and \
+         below " {most} " N m s/rad, so that the tank can count the motion with this encoder, motor and period"),
     Timeout { timeout: f64, least: f64 } => (
         "the host's timeout is " {timeout} " s, and must be at least two periods, which are " {least} " s"),
     Stores => (

@@ -27,7 +27,7 @@ pub use beside::{
 pub use channel::{HostChannel, HostWords};
 pub use error::HostError;
 pub use response::{HostResponse, Sampling};
-pub use tank::{Tank, TankNumber};
+pub use tank::{Tank, TankNumbers};
 
 /// What a host may do.
 ///

@@ -20,9 +20,9 @@
 //!
 //! The parts of the share are chosen to make the coefficient of `h^2` least.
 
-use super::{HostError, HostTimes, HostTorque, ServoNumbers};
+use super::{HostError, HostTimes, HostTorque, ServoNumbers, TankNumbers};
+use crate::dac::DacCode;
 use crate::latency::Latency;
-use crate::number::Format;
 use crate::output_timing::{OutputTiming, READ_WITHIN};
 use crate::passivity::interval::Interval;
 use crate::passivity::lagged::Decay;
@@ -35,8 +35,10 @@ pub struct Sampling {
     pub period: f64,
     /// Longest time in s between two updates, if updates may be missed.
     pub worst_period: Option<f64>,
-    /// Width of a count in rad; 0 for a position without steps.
+    /// Width of a count in rad.
     pub count: f64,
+    /// Torque in N m of a code of the DAC; commands have whole codes.
+    pub code: f64,
     /// Whole ticks from a count to the output of its torque, in addition to the latency: 1 if it is latched.
     pub ticks: usize,
     /// The most in s by which a count is read late, in addition to the latency's jitter.
@@ -45,18 +47,21 @@ pub struct Sampling {
 
 impl Sampling {
     /// Each torque is put out at the instant of its count, apart from the latency.
-    pub const fn simultaneous(timing: &Timing, count: f64) -> Self {
+    pub const fn simultaneous(timing: &Timing, count: f64, code: f64) -> Self {
         let Timing { period, worst_period } = *timing;
-        Self { period, worst_period, count, ticks: 0, reading: 0.0 }
+        Self { period, worst_period, count, code, ticks: 0, reading: 0.0 }
     }
 }
 
-/// The numbers of a tank in SI units, before rounding to its number format. Torques are divided by the root of
-/// [`HostResponse::price`], so that a command without memory costs its square.
+/// The numbers of a tank in SI units, before rounding to its whole numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HostResponse {
     /// Period in s.
     pub period: f64,
+    /// Width of a count in rad.
+    pub count: f64,
+    /// Torque in N m of a code of the DAC.
+    pub code: f64,
     /// Whole ticks from a command to the tick in which it acts.
     pub whole: usize,
     /// Whether a command only acts in one tick, without errors of the model.
@@ -66,8 +71,6 @@ pub struct HostResponse {
     /// Torque in N m at a speed of one rad per period that is worth as much: twice the main share over the
     /// period.
     pub speed: f64,
-    /// Energy in J of 1 N^2 m^2 at a price of 1.
-    pub joules: f64,
     /// What the lag leaves of a step over a period.
     pub decay: f64,
     /// Half the coefficients of a command times the torque at its begin, and times the command before.
@@ -88,6 +91,9 @@ pub struct HostResponse {
     /// Energy in J that counts can cost once all later commands are zero.
     pub reserve: f64,
 }
+
+/// A part of the lag's range more than stated, which covers the rounding of the modelled torque.
+const WIDER: f64 = 1.0 + 1.0 / 1024.0;
 
 /// Largest deviation of counts in periods: from a quarter on nothing is left of the share.
 const MOST_DEVIATION: f64 = 0.2;
@@ -114,7 +120,8 @@ impl HostResponse {
         let lambda = 2.0 * unspread * (1.0 - a);
 
         let tau = lag.tau.midpoint();
-        let spread = 0.5 * (latency.actuator_lag.most - latency.actuator_lag.least) / period;
+        let range = latency.actuator_lag.most - latency.actuator_lag.least;
+        let spread = 0.5 * WIDER * range / period;
         let of_lag = if spread == 0.0 { 0.0 } else { spread * spread * (1.0 - a) / tau };
         let (deviation, of_counts) = deviations(latency, sampling);
         if of_counts > MOST_DEVIATION {
@@ -138,18 +145,14 @@ impl HostResponse {
         let over = 1.0 - part;
         let first = [over - held * (1.0 - rest), held * (1.0 - rest)];
         let total = [1.0 - held * (1.0 - a), held * (1.0 - a)];
-        let ticks = 1.0 + whole as f64 + sampling.ticks as f64 + part + held;
-        let reserve = sampling.count * host.torque * (2.0 * ticks + 0.5);
-        if reserve >= host.energy {
-            return Err(HostError::Energy { energy: host.energy, least: reserve });
-        }
-        Ok(Self {
+        let response = Self {
             period,
+            count: sampling.count,
+            code: sampling.code,
             whole: whole + sampling.ticks,
             is_plain: part == 0.0 && tau == 0.0 && deviation == 0.0,
             price: own + last + 2.0 * of_steps,
             speed: 2.0 * main / period,
-            joules: 0.25 * period / main,
             decay: a,
             pull: [0.5 * (lambda - last), -of_steps],
             tail: [held - unspread + squared, of_steps],
@@ -158,8 +161,10 @@ impl HostResponse {
             is_late: part > 0.0,
             unfinished: [part, 2.0 * held * (rest - a), (held - unspread) * (rest * rest - a * a)],
             step_price: 0.0,
-            reserve,
-        })
+            reserve: TankNumbers::of_counts(sampling),
+        };
+        ok!(TankNumbers::of(host, &response));
+        Ok(response)
     }
 
     /// The response beside a servo whose commands act at these times.
@@ -174,9 +179,6 @@ impl HostResponse {
         ok!(host.check());
         ok!(host.check_share(servo.margin));
         ok!(host.check_range(servo.torque_limit, servo.full_scale));
-        if !matches!(servo.format, Format::F32 | Format::F64) {
-            return Err(HostError::NotCovered { time: "a servo in a fixed-point format" });
-        }
         if servo.stores {
             return Err(HostError::Stores);
         }
@@ -187,7 +189,8 @@ impl HostResponse {
             OutputTiming::AtPhase(_) => (0, READ_WITHIN),
         };
         let count = servo.radians_per_count;
-        let sampling = Sampling { period, worst_period, count, ticks, reading };
+        let code = servo.full_scale / DacCode::CODES_TO_FULL_SCALE as f64;
+        let sampling = Sampling { period, worst_period, count, code, ticks, reading };
         let mut response = ok!(Self::of(host, servo.latency, &sampling));
         if host.timeout < 2.0 * period {
             return Err(HostError::Timeout { timeout: host.timeout, least: 2.0 * period });
@@ -214,16 +217,16 @@ impl HostResponse {
         if of_steps == 0.0 || has_lag {
             return Ok(self);
         }
-        let price = self.price - 2.0 * of_steps;
-        let joules = self.joules * price;
+        // Energy in J of 1 N^2 m^2 in a tick.
+        let joules = 0.5 / self.speed;
         let square = (host.torque * host.torque).min(host.energy / joules);
         let steps = 4.0 * (self.whole + 1) as f64 + 1.0;
         let reserve = self.reserve + steps * of_steps * square * joules;
-        if reserve >= host.energy {
-            return Err(HostError::Energy { energy: host.energy, least: reserve });
-        }
         let (pull, tail) = ([0.0; 2], [0.0; 2]);
-        Ok(Self { is_plain: true, price, pull, tail, step_price: of_steps, reserve, ..self })
+        let plain = Self { is_plain: true, price: 1.0, pull, tail, step_price: of_steps, ..self };
+        let response = Self { reserve, ..plain };
+        ok!(TankNumbers::of(host, &response));
+        Ok(response)
     }
 }
 

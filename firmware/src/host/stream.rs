@@ -3,11 +3,10 @@
 use core::hint::cold_path;
 
 use super::HostTorque;
+use super::tank::STEP_BITS;
 
-/// Longest ramp in ticks, whose rounding stays below what a step of it is short of.
+/// Longest ramp in ticks.
 const LONGEST_RAMP: u32 = 10_000;
-/// The part of its way that a ramp goes before its last tick.
-const SHORT: f32 = 1.0 - 1.0 / 1024.0;
 
 /// What a ramp does at its end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,15 +19,16 @@ enum Then {
     Rest,
 }
 
-/// The wanted torque. A command is reached along a line, held, and faded to zero if none follows it: after
-/// half of the timeout, over the other half.
+/// The wanted torque in codes of the DAC. A command is reached along a line, held, and faded to zero if none
+/// follows it: after half of the timeout, over the other half.
 #[derive(Clone, Debug)]
 pub(super) struct Stream {
-    pub wanted: f32,
-    step: f32,
+    /// In steps, [`STEP_BITS`] below a code, as are the others.
+    wanted: i32,
+    step: i32,
     /// Ticks until the present ramp or hold ends; wraps at rest.
     left: u32,
-    target: f32,
+    target: i32,
     then: Then,
     /// Half of the timeout in ticks, at least one.
     half: u32,
@@ -39,40 +39,46 @@ impl Stream {
     pub fn new(host: &HostTorque, period: f64) -> Self {
         // The cast rounds down and saturates.
         let half = ((0.5 * host.timeout / period) as u32).clamp(1, LONGEST_RAMP);
-        Self { wanted: 0.0, step: 0.0, left: 0, target: 0.0, then: Then::Rest, half }
+        Self { wanted: 0, step: 0, left: 0, target: 0, then: Then::Rest, half }
     }
 
-    /// The wanted torque of the next tick.
+    /// Goes on to the next tick.
     #[inline(always)]
-    pub fn next(&mut self) -> f32 {
+    pub fn advance(&mut self) {
         self.left = self.left.wrapping_sub(1);
-        self.wanted += self.step;
+        self.wanted = self.wanted.wrapping_add(self.step);
         if self.left == 0 {
             cold_path();
             self.end();
         }
-        self.wanted
+    }
+
+    /// The wanted torque of the tick.
+    #[inline(always)]
+    pub const fn wanted(&self) -> i32 {
+        self.wanted >> STEP_BITS
     }
 
     #[cold]
     #[inline(never)]
     fn end(&mut self) {
         self.wanted = self.target;
-        self.step = 0.0;
+        self.step = 0;
         match self.then {
             Then::Hold(ticks) => (self.left, self.then) = (ticks, Then::Fade),
-            Then::Fade => self.ramp(0.0, self.half, Then::Rest),
+            Then::Fade => self.ramp(0, self.half, Then::Rest),
             Then::Rest => {}
         }
     }
 
     /// Takes a command: a torque within the host's largest. It is not reached before the scene's torque limit is
     /// open, in `opening` ticks.
-    pub fn take(&mut self, torque: f32, ramp: u16, opening: u32) {
+    pub fn take(&mut self, torque: i32, ramp: u16, opening: u32) {
         let ticks = u32::from(ramp).max(opening).clamp(1, self.half);
-        let way = torque - self.wanted;
+        let torque = torque << STEP_BITS;
         let target = if opening > ticks {
-            self.wanted + way * (ticks as f32 / opening as f32)
+            let way = i64::from(torque - self.wanted) * i64::from(ticks);
+            self.wanted + (way / i64::from(opening)) as i32
         } else {
             torque
         };
@@ -81,38 +87,36 @@ impl Stream {
 
     /// A line to zero in so many ticks.
     pub fn fade(&mut self, ticks: u32) {
-        self.ramp(0.0, ticks.clamp(1, LONGEST_RAMP), Then::Rest);
+        self.ramp(0, ticks.clamp(1, LONGEST_RAMP), Then::Rest);
     }
 
-    /// The larger of the present torque and of that to come, in N m without the sign.
-    pub const fn largest(&self) -> f32 {
+    /// The larger of the present torque and of that to come, in steps without the sign.
+    pub fn largest(&self) -> i32 {
         self.wanted.abs().max(self.target.abs())
     }
 
-    /// Keeps to this torque in N m from now on.
-    pub fn limit(&mut self, most: f32) {
-        let limited = |torque: f32| torque.max(-most).min(most);
-        (self.wanted, self.target) = (limited(self.wanted), limited(self.target));
-        let ticks = self.left.max(1) as f32;
-        self.step = (self.target - self.wanted) / ticks * SHORT;
+    /// Keeps to this torque in steps from now on.
+    pub fn limit(&mut self, most: i32) {
+        (self.wanted, self.target) = (self.wanted.clamp(-most, most), self.target.clamp(-most, most));
+        self.step = (self.target - self.wanted) / self.left.clamp(1, LONGEST_RAMP) as i32;
     }
 
     /// Whether nothing is wanted until the next command.
     pub fn is_at_rest(&self) -> bool {
-        self.then == Then::Rest && self.wanted == 0.0 && self.step == 0.0
+        self.then == Then::Rest && self.wanted == 0 && self.step == 0
     }
 
-    /// A line that stays short of its target until its last tick, so that rounding never leads beyond it.
-    fn ramp(&mut self, target: f32, ticks: u32, then: Then) {
+    /// A line that stays short of its target until its last tick.
+    fn ramp(&mut self, target: i32, ticks: u32, then: Then) {
         self.target = target;
-        self.step = (target - self.wanted) / ticks as f32 * SHORT;
+        self.step = (target - self.wanted) / ticks as i32;
         (self.left, self.then) = (ticks, then);
     }
 
     /// Wants nothing until the next command.
     pub fn rest(&mut self) {
-        (self.wanted, self.step, self.left) = (0.0, 0.0, 0);
-        (self.target, self.then) = (0.0, Then::Rest);
+        (self.wanted, self.step, self.left) = (0, 0, 0);
+        (self.target, self.then) = (0, Then::Rest);
     }
 }
 
@@ -131,25 +135,25 @@ mod tests {
     fn a_stale_torque_is_zero_after_the_timeout() {
         for ramp in [0, 1, 4, 10, u16::MAX] {
             let mut stream = stream();
-            stream.take(1.0, ramp, 0);
+            stream.take(1000, ramp, 0);
             let torques: std::vec::Vec<_> = (0..40).map(|_| stream.next()).collect();
-            let reached = torques.iter().position(|torque| *torque == 1.0).unwrap();
+            let reached = torques.iter().position(|torque| *torque == 1000).unwrap();
             assert_eq!(reached, usize::from(ramp.clamp(1, 10)) - 1, "{ramp}");
             assert!(
                 torques[..reached].is_sorted() && torques[reached..].is_sorted_by(|a, b| a >= b)
             );
-            assert!(torques[21..].iter().all(|torque| *torque == 0.0), "{ramp}: {torques:?}");
+            assert!(torques[21..].iter().all(|torque| *torque == 0), "{ramp}: {torques:?}");
         }
     }
 
     #[test]
     fn the_last_command_wins() {
         let mut stream = stream();
-        stream.take(1.0, 4, 0);
+        stream.take(1000, 4, 0);
         stream.next();
-        stream.take(-0.5, 0, 0);
-        assert_eq!(stream.next(), -0.5);
+        stream.take(-500, 0, 0);
+        assert_eq!(stream.next(), -500);
         stream.rest();
-        assert!((0..100).all(|_| stream.next() == 0.0));
+        assert!((0..100).all(|_| stream.next() == 0));
     }
 }

@@ -1,4 +1,4 @@
-//! The tank: the energy that a host's torque may still take, tick by tick.
+//! The tank: the energy that a host's torque may still take, tick by tick, in whole numbers.
 //!
 //! With `d` the step of the position in a tick, `m` the mean of the host's torque at the motor over it, `rho`
 //! its ripple and `delta` the host's share of damping, a tick of any passive hand leaves
@@ -13,448 +13,529 @@
 //! later commands zero, and takes the first term back after each tick, with the supply's power. A command is
 //! allowed if the tank can pay for it. Zero costs nothing, so it is always allowed.
 //!
-//! # Rounding
+//! # Whole numbers
 //!
-//! The level `x` of this file is never above the exact one. Let `u` be the format's unit roundoff.
+//! Positions are counts, and commands whole codes of the DAC, so that the torque of the codes is the one that
+//! is booked. A torque is a number of *steps*, `2^-14` codes, and an energy has the unit of a squared step over
+//! a period, divided by four times the share. With `S` steps for a count, the first term is the square of `y =
+//! S d - m`, and a command without memory costs its square: nothing is rounded but `S`, the cap and the power,
+//! once and down.
 //!
-//! - `y = d s - m` is off by `2u |d s| + u |y| <= 3u |y| + 2u |m|`, so `y^2` by at most `8u y^2 + 2u m^2`. The
-//!   square, the sums and the products between it and the end of the next tick add less than `7u` of each
-//!   summand; [`Tank::book`] takes `16u` of the sum away, which is more than that.
-//! - The coefficients of all that is given back are rounded down, those of costs up, by more than an ulp.
-//! - The modelled torque is off by rounding in each tick, at most `16u/(1 - a)` of the commands in the sum of
-//!   their squares, with the lag's decay `a`. That, the `2u m^2` above and the rounding of a cost are paid
-//!   with the part `64u/(1 - a)` of the share, and with twice that much of the square of each command.
-//! - An allowed command is `64u` below the root, so that its computed cost is not above `x`, and `x` does not
-//!   become negative by paying. The root is approached from below ([`TankNumber::reciprocal_root`]). The cost
-//!   is compared in any case: without this argument a command could become zero, but never too large.
+//! A count shows the position to half a count. With `r` between -1/2 and 1/2 where the position is within its
+//! count, the square is one of `y + S (r' - r)`, which is at least `y^2 + 2 S y (r' - r)`. Summed by parts, the
+//! errors of all ticks are at most the sum of `S |y - y_before|`, and `S |y|` at the end: the tank debits the
+//! first, and the reserve has the second. For that, `y` may be nearer to zero than it is, since for `c` between
+//! zero and `y` the square is at least `c^2 + 2 c (y - c) + 2 S c (r' - r)`. So it is clamped to 2^26 steps, and
+//! the reserve is `S` times that. A product that wraps only does so above 2^31 - 2^25 steps, whose square is
+//! above that of any clamped number with any error of a count.
+//!
+//! An amplifier with a lag makes torques that are no whole numbers. A coefficient is off by at most 2^-25, a
+//! torque is below 2^25 steps, and results are rounded: so the modelled torque is off by 3 steps in each tick,
+//! and its mean by 6 more. Together that is a torque of at most `9/(1 - a)` steps beside the modelled one, with
+//! the lag's decay `a`. A part of 2^-10 of the share pays for it, and the power is less by what that part costs.
+//! The modelled torque is rounded to zero, so that the price of its tail is not less than what was paid, and
+//! costs are rounded up.
 
 use core::hint::cold_path;
 
-use super::{HostError, HostResponse, HostTorque};
+use super::{HostError, HostResponse, HostTorque, Sampling};
 use crate::environment::DelayLine;
-use crate::number::Number;
-use crate::passivity::interval::Interval;
 
-/// A floating-point format for a tank. A servo in a fixed-point format has a tank in `f32`.
-pub trait TankNumber: Number<Coefficient = Self> {
-    /// Half the distance from 1 to the next number.
-    const ROUNDOFF: f64;
+/// Binary digits of a code of the DAC in steps of a torque.
+pub(super) const STEP_BITS: u32 = 14;
+/// The most steps whose square a tick gives back.
+const LARGEST: i32 = 1 << 26;
+/// The most codes of a torque.
+const MOST_CODES: f64 = 2047.0;
+/// Steps for a count, at least and at most.
+const SPEEDS: [f64; 2] = [16.0, (1 << 27) as f64];
+/// The unit of the cap.
+const CAP_UNIT: f64 = (1_u64 << 32) as f64;
+/// The most that a full tank has in that unit.
+const MOST_CAP: f64 = (1 << 29) as f64;
+/// Below the roundings of a few sums and products.
+const LESS: f64 = 1.0 - 1.0 / (1_u64 << 48) as f64;
+/// The part of the share that pays for the rounding of a modelled torque.
+const ROUNDED: f64 = 1.0 / 1024.0;
 
-    /// The nearest number.
-    fn nearest(value: f64) -> Self;
-
-    /// The number without its sign, in one instruction.
-    fn magnitude(self) -> Self;
-
-    /// One over the root of a positive number, by Newton's method, whose results are never above it except by
-    /// rounding.
-    fn reciprocal_root(self) -> Self;
-}
-
-macro_rules! tank_number {
-    ($float:ident, $roundoff:expr, $guess:expr, $steps:literal) => {
-        impl TankNumber for $float {
-            const ROUNDOFF: f64 = $roundoff;
-
-            fn nearest(value: f64) -> Self {
-                value as Self
-            }
-
-            #[inline(always)]
-            fn magnitude(self) -> Self {
-                self.abs()
-            }
-
-            fn reciprocal_root(self) -> Self {
-                // Half the exponent with the sign changed, and a straight line for the digits: 4 % off at most.
-                let mut root = Self::from_bits($guess - (self.to_bits() >> 1));
-                for _ in 0..$steps {
-                    root *= 1.5 - 0.5 * self * root * root;
-                }
-                root
-            }
-        }
-    };
-}
-
-tank_number!(f32, 1.0 / (1_u64 << 24) as f64, 0x5f37_59df_u32, 3);
-tank_number!(f64, 1.0 / (1_u64 << 53) as f64, 0x5fe6_eb50_c7b5_37a9_u64, 5);
-
-/// The tank of a host beside a servo.
-///
-/// `D` has the length of [`HostResponse::whole`]. If `PLAIN` is true the [response](HostResponse::is_plain) has
-/// to be plain, and a tick has no code for a lag.
-#[derive(Clone, Debug)]
-pub struct Tank<R: TankNumber, D, const PLAIN: bool> {
-    /// Torque per step of the position, of what a moving device gives back.
-    speed: R,
-    /// Level per step of the position, because its ends are known within counts only.
-    count_error: R,
-    /// Level per change of the mean torque, because of the same.
-    count_step: R,
-    /// Level per squared change of the mean torque, for commands without a memory of the last.
-    step_price: R,
-    power: R,
-    cap: R,
-    /// The cap of the present tick: less while motion gives nothing back.
-    held: R,
-    leak: R,
-    below_root: R,
-    torque: R,
-    memory: Spread<R>,
-    /// The energies that commands leave for the tick after the one in which they begin.
-    unfinished: D,
-    /// The level above the reserve, in squares of torques.
-    level: R,
-    /// The mean torque of the present tick.
-    mean: R,
-    means: D,
-    /// The energies of the commands that have not begun.
-    energies: D,
+/// The whole numbers of a tank.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TankNumbers {
+    /// Steps for a count.
+    speed: i32,
+    /// Level per tick.
+    power: i64,
+    /// The largest level in units of 2^32.
+    cap: i32,
+    /// The reserve as a level.
+    owed: i64,
+    /// Level per squared change of the torque in units of 2^-32, for commands without a memory of the last.
+    step_price: i32,
+    /// The largest command in codes.
+    largest: i32,
+    /// N m of a code.
+    code: f32,
     /// J for a level of 1.
     joules: f64,
-    reserve: f64,
 }
 
-/// The part of a tank for a torque that is not over with its tick.
-#[derive(Clone, Copy, Debug)]
-struct Spread<R> {
-    decay: R,
-    pull: [R; 2],
-    tail: [R; 2],
-    first: [R; 2],
-    second: [R; 2],
+/// The coefficients of a torque that is not over with its tick; those of costs are rounded up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Amplifier {
+    price: i32,
+    decay: i32,
+    pull: [i32; 2],
+    tail: [i32; 2],
+    first: [i32; 2],
+    second: [i32; 2],
     is_late: bool,
-    over: [R; 3],
-    /// The torque at the motor where the last command ends.
-    lagging: R,
-    /// The last command.
-    before: R,
-    /// Its mean in the tick in which it ends.
-    rest: R,
-    /// The rest of the energy of the command that began in the last tick.
-    unfinished: R,
+    over: [i32; 3],
 }
 
-impl<R: TankNumber, D: DelayLine<R>, const PLAIN: bool> Tank<R, D, PLAIN> {
-    /// A full tank at rest, for positions in units of `angle` rad and torques in units of `torque` N m.
-    ///
-    /// # Errors
-    /// If the number format leaves nothing of the energy.
-    pub fn new(
-        host: &HostTorque,
-        response: &HostResponse,
-        count: f64,
-        [angle, torque]: [f64; 2],
-    ) -> Result<Self, HostError> {
-        let slack = 64.0 * R::ROUNDOFF / (1.0 - response.decay);
-        let price = response.price + 2.0 * slack;
-        let scale = 1.0 / Interval::exact(price).sqrt().midpoint();
-        let (less, more) = (1.0 - 8.0 * R::ROUNDOFF, 1.0 + 8.0 * R::ROUNDOFF);
-        let speed = response.speed * (1.0 - slack) * scale / torque;
-        let joules = response.joules / (1.0 - slack) * price * torque * torque;
-        // Half a step more of energy for each count's width.
-        let count_error = 2.0 * speed * count * speed * angle;
-        let weighted =
-            |[own, lagging]: [f64; 2]| [R::nearest(own * scale), R::nearest(lagging * scale)];
-        let part = |value: f64| R::nearest(value / price);
-        let cap = R::nearest((host.energy - response.reserve) / joules * less);
-        let memory = Spread {
-            decay: R::nearest(response.decay),
-            pull: response.pull.map(part),
-            tail: response.tail.map(part),
-            first: weighted(response.first),
-            second: weighted(response.second),
-            is_late: response.is_late,
-            over: response.unfinished.map(part),
-            lagging: R::ZERO,
-            before: R::ZERO,
-            rest: R::ZERO,
-            unfinished: R::ZERO,
-        };
-        let line = || {
-            D::at_rest(response.whole).map_err(|_| HostError::NotCovered {
-                time: "an output delay of more than eight periods",
-            })
-        };
+impl Amplifier {
+    const NONE: Self = Self {
+        price: 0,
+        decay: 0,
+        pull: [0; 2],
+        tail: [0; 2],
+        first: [0; 2],
+        second: [0; 2],
+        is_late: false,
+        over: [0; 3],
+    };
+    /// Binary digits after the point.
+    const BITS: u32 = 24;
+    const LARGEST: f64 = 127.0;
+
+    const fn of(response: &HostResponse) -> Result<Self, HostError> {
+        let HostResponse { price, decay, pull, tail, first, second, unfinished, .. } = *response;
+        // Written so that NaN is refused.
+        if !(price < Self::LARGEST && tail[0] < Self::LARGEST && tail[1] < Self::LARGEST) {
+            return Err(HostError::NotCovered { time: "a lag of more than a hundred periods" });
+        }
         Ok(Self {
-            speed: R::nearest(speed * angle * less),
-            count_error: R::nearest(count_error * more),
-            count_step: R::nearest(speed * count * more),
-            step_price: R::nearest(response.step_price * more),
-            power: R::nearest(host.power * response.period / joules * less),
-            cap,
-            held: cap,
-            leak: R::nearest(16.0 * R::ROUNDOFF),
-            below_root: R::nearest(1.0 - 64.0 * R::ROUNDOFF),
-            torque: R::bound_from_f64(host.torque / torque).unwrap_or(R::ZERO),
-            memory,
-            unfinished: line()?,
-            level: cap,
-            mean: R::ZERO,
-            means: line()?,
-            energies: line()?,
-            joules,
-            reserve: response.reserve,
+            price: Self::above(price),
+            decay: Self::near(decay),
+            pull: [Self::near(pull[0]), Self::near(pull[1])],
+            tail: [Self::above(tail[0]), Self::above(tail[1])],
+            first: [Self::near(first[0]), Self::near(first[1])],
+            second: [Self::near(second[0]), Self::near(second[1])],
+            is_late: response.is_late,
+            over: [
+                Self::above(unfinished[0]),
+                Self::near(unfinished[1]),
+                Self::above(unfinished[2]),
+            ],
         })
     }
 
-    /// Ends a tick in which the position has moved by this much.
-    #[inline(always)]
-    pub fn book(&mut self, moved: R) {
-        let y = moved.times(self.speed).minus(self.mean);
-        let earned = y.times(y).plus(self.power);
-        let lost = moved.magnitude().times(self.count_error);
-        let level = self.level.plus(earned).minus(lost);
-        // Of a negative level, too, it takes something away.
-        let level = level.minus(level.magnitude().times(self.leak));
-        self.level = level.smaller(self.held.minus(self.to_come()));
+    const fn near(value: f64) -> i32 {
+        let scaled = value * (1 << Self::BITS) as f64;
+        (if scaled < 0.0 { scaled - 0.5 } else { scaled + 0.5 }) as i32
     }
 
-    /// Whether the energy left in another tank of the same response pays for its torques under way here, too.
-    pub(super) fn pays_for(&self, last: &Self) -> bool {
-        last.to_come() == R::ZERO || self.level_of(last) >= R::ZERO
+    const fn above(value: f64) -> i32 {
+        (value * (1 << Self::BITS) as f64) as i32 + 1
+    }
+}
+
+impl TankNumbers {
+    const NOTHING: Self = Self {
+        speed: 0,
+        power: 0,
+        cap: 0,
+        owed: 0,
+        step_price: 0,
+        largest: 0,
+        code: 1.0,
+        joules: 0.0,
+    };
+
+    /// Energy in J of the reserve for counts.
+    pub(super) const fn of_counts(sampling: &Sampling) -> f64 {
+        0.5 * sampling.count * sampling.code * (LARGEST >> STEP_BITS) as f64
     }
 
-    /// Takes the energy and the torques under way of another tank, which differs in its budget alone: torques
-    /// have the same unit in both, and levels another. The energy is at most that of this tank.
-    pub(super) fn take_over(&mut self, last: &Self) {
-        self.level = self.level_of(last).smaller(self.cap.minus(last.to_come()));
-        self.held = self.cap;
-        (self.mean, self.unfinished) = (last.mean, last.unfinished.clone());
-        (self.means, self.energies) = (last.means.clone(), last.energies.clone());
-        let Spread { lagging, before, rest, unfinished, .. } = last.memory;
-        self.memory = Spread { lagging, before, rest, unfinished, ..self.memory };
-    }
-
-    /// The level at which this tank has no more energy than another, with the torques under way at its price.
-    fn level_of(&self, last: &Self) -> R {
-        let (level, to_come) = (last.level.to_f64(), last.to_come().to_f64());
-        // With a torque at the motor the last step of the position is known within that tank's reserve only.
-        let is_at_rest = last.mean == R::ZERO && to_come == 0.0;
-        let unknown = if is_at_rest { 0.0 } else { last.reserve };
-        let energy = (level + to_come) * last.joules + last.reserve - unknown;
-        let scaled = (energy - self.reserve) / self.joules;
-        // Above the rounding of the sums here and of the number format.
-        let rounded = 8.0 * R::ROUNDOFF * (scaled.abs() + to_come + self.reserve / self.joules);
-        R::nearest(scaled - to_come - rounded)
-    }
-
-    /// An empty tank that never has any energy, with these lines at rest.
-    pub(super) fn empty(means: D, energies: D) -> Self {
-        let zero = R::ZERO;
-        let memory = Spread {
-            decay: zero,
-            pull: [zero; 2],
-            tail: [zero; 2],
-            first: [zero; 2],
-            second: [zero; 2],
-            is_late: false,
-            over: [zero; 3],
-            lagging: zero,
-            before: zero,
-            rest: zero,
-            unfinished: zero,
-        };
-        Self {
-            speed: zero,
-            count_error: zero,
-            count_step: zero,
-            step_price: zero,
-            power: zero,
-            cap: zero,
-            held: zero,
-            leak: zero,
-            below_root: zero,
-            torque: zero,
-            memory,
-            unfinished: means.clone(),
-            level: zero,
-            mean: zero,
-            means,
-            energies,
-            joules: 0.0,
-            reserve: 0.0,
+    /// Of a budget and the response of the motor.
+    ///
+    /// # Errors
+    /// If a number of the budget is too small or too large for a tank.
+    pub const fn of(host: &HostTorque, response: &HostResponse) -> Result<Self, HostError> {
+        let HostTorque { energy, power, damping, torque, .. } = *host;
+        let HostResponse { code, count, reserve, is_plain, .. } = *response;
+        let codes = torque / code / LESS;
+        if codes < 1.0 {
+            return Err(HostError::Torque { torque, least: code });
         }
+        ok!(Amplifier::of(response));
+        let step = code / (1 << STEP_BITS) as f64;
+        let share = if is_plain { LESS } else { LESS - ROUNDED };
+        let speed = response.speed * count / step * share;
+        let [least, most] = SPEEDS;
+        // Written so that NaN is refused.
+        if !(speed >= least && speed < most) {
+            let [least, most] = [damping * (least / speed), damping * (most / speed)];
+            return Err(HostError::Steps { damping, least, most });
+        }
+        let speed = speed as i32;
+        let joules = 0.5 * step * count / speed as f64 / LESS;
+        let cap = (energy - reserve) / joules / CAP_UNIT;
+        if cap < 1.0 {
+            return Err(HostError::Energy { energy, least: reserve + CAP_UNIT * joules });
+        }
+        let most = MOST_CAP * CAP_UNIT * joules;
+        if energy > most {
+            return Err(HostError::MostEnergy { energy, most });
+        }
+        let step_price = response.step_price * CAP_UNIT;
+        if step_price > (i32::MAX / 2) as f64 {
+            return Err(HostError::NotCovered {
+                time: "a jitter of more than an eighth of a period",
+            });
+        }
+        // The casts round down and saturate.
+        let power = (power * response.period / joules).min((1_u64 << 62) as f64) as i64;
+        Ok(Self {
+            speed,
+            power: power - if is_plain { 0 } else { rounding(response.decay) },
+            cap: cap as i32,
+            owed: (reserve / joules / LESS) as i64 + 1,
+            // Of a change of whole codes, the product with this is rounded down to no less than the price.
+            step_price: if step_price > 0.0 { step_price as i32 + (1 << 18) + 1 } else { 0 },
+            largest: codes.min(MOST_CODES) as i32,
+            code: code as f32,
+            joules,
+        })
+    }
+}
+
+/// The level that a tick takes for the rounding of the torque behind a lag with this decay.
+const fn rounding(decay: f64) -> i64 {
+    let off = 9.0 / (1.0 - decay);
+    (2.0 * off * off / ROUNDED) as i64 + 1
+}
+
+/// The tank of a host beside a servo.
+///
+/// `D` has the length of [`HostResponse::whole`]. `LAGS` is 0 if the [response](HostResponse::is_plain) is plain,
+/// so that a tick has no code for a lag, and 1 if it is not.
+#[derive(Clone, Debug)]
+pub struct Tank<D, const LAGS: usize> {
+    numbers: TankNumbers,
+    /// The level below the cap.
+    missing: i64,
+    /// Level per tick and steps for a count in the present tick: zero while motion gives nothing back.
+    power: i64,
+    speed: i32,
+    /// The mean torque of the present tick.
+    mean: i32,
+    /// The last tick gave the square of this back.
+    before: i32,
+    means: D,
+    lagging: [Lagging<D>; LAGS],
+}
+
+/// The torque of an amplifier with a lag.
+#[derive(Clone, Debug)]
+struct Lagging<D> {
+    amplifier: Amplifier,
+    /// The torque at the motor where the last command ends.
+    torque: i32,
+    /// The last command.
+    before: i32,
+    /// Its mean in the tick in which it ends.
+    rest: i32,
+    /// The energies of the commands that have not begun.
+    energies: D,
+    /// The rest of the energy of the command that began in the last tick.
+    unfinished: i64,
+    /// The energies that commands leave for the tick after the one in which they begin.
+    unfinished_later: D,
+}
+
+impl<D: DelayLine<i64>, const LAGS: usize> Tank<D, LAGS> {
+    /// A full tank at rest.
+    ///
+    /// # Errors
+    /// If a number of the budget is too small or too large.
+    pub fn new(host: &HostTorque, response: &HostResponse) -> Result<Self, HostError> {
+        let (numbers, amplifier) = (TankNumbers::of(host, response)?, Amplifier::of(response)?);
+        let line = D::at_rest(response.whole).map_err(|_| HostError::NotCovered {
+            time: "an output delay of more than eight periods",
+        })?;
+        let TankNumbers { speed, power, .. } = numbers;
+        let lagging = core::array::from_fn(|_| Lagging::at_rest(amplifier, &line));
+        Ok(Self { numbers, speed, power, missing: 0, before: 0, mean: 0, means: line, lagging })
+    }
+
+    /// An empty tank that never has any energy, with this line at rest.
+    pub(super) fn empty(line: D) -> Self {
+        let lagging = core::array::from_fn(|_| Lagging::at_rest(Amplifier::NONE, &line));
+        let numbers = TankNumbers::NOTHING;
+        Self { numbers, speed: 0, power: 0, missing: 0, before: 0, mean: 0, means: line, lagging }
+    }
+
+    /// Ends a tick in which the position has moved by so many counts.
+    #[inline(always)]
+    pub fn book(&mut self, moved: i32) {
+        let y = self.mean.wrapping_sub(moved.wrapping_mul(self.speed)).clamp(-LARGEST, LARGEST - 1);
+        let lost = product(magnitude(y.wrapping_sub(self.before)), self.speed);
+        let earned = product(y, y).wrapping_add(self.power);
+        let missing = self.missing.wrapping_sub(earned).wrapping_add(lost);
+        let to_come = self.to_come();
+        self.missing = clamped(missing.wrapping_sub(to_come)).wrapping_add(to_come);
+        self.before = y;
+    }
+
+    /// The energy of the commands given so far that is still to come.
+    #[inline(always)]
+    fn to_come(&self) -> i64 {
+        let squares = || self.means.waiting().iter().map(|&mean| product(mean as i32, mean as i32));
+        self.lagging.first().map_or_else(|| squares().sum(), Lagging::to_come)
+    }
+
+    /// The torque in codes that the motor gets of a wanted torque in [range](Self::in_range).
+    #[inline(always)]
+    pub fn allowed(&mut self, wanted: i32) -> i32 {
+        if self.pays(self.cost(wanted)) { wanted } else { self.affordable(wanted) }
+    }
+
+    /// Whether the level pays for a command that costs this much.
+    #[inline(always)]
+    pub(super) fn pays(&self, cost: i64) -> bool {
+        ((self.missing.wrapping_add(cost) >> 32) as i32) < self.numbers.cap
+    }
+
+    /// What a command in codes costs until the end of its response.
+    #[inline(always)]
+    pub(super) fn cost(&self, command: i32) -> i64 {
+        let command = command << STEP_BITS;
+        let lagging = self.lagging.first();
+        lagging.map_or_else(|| product(command, command), |lagging| lagging.cost(command))
+    }
+
+    /// The wanted torque in N m as codes within the host's largest; zero if it is no finite number. A torque
+    /// passes here once, where it arrives, and not in each tick.
+    pub fn in_range(&self, wanted: f32) -> i32 {
+        if !wanted.is_finite() {
+            return 0;
+        }
+        let codes = wanted / self.numbers.code;
+        let half = if codes < 0.0 { -0.5 } else { 0.5 };
+        // The cast saturates.
+        ((codes + half) as i32).clamp(-self.numbers.largest, self.numbers.largest)
+    }
+
+    /// The largest command in codes.
+    pub(super) const fn largest(&self) -> i32 {
+        self.numbers.largest
+    }
+
+    /// The largest command of the same sign that the level pays: costs rise on both sides of zero.
+    #[cold]
+    #[inline(never)]
+    fn affordable(&mut self, wanted: i32) -> i32 {
+        cold_path();
+        // However a hand has moved, it did not get more than the energy, which is two reserves below any level.
+        let TankNumbers { owed, .. } = self.numbers;
+        self.missing = self.missing.min(self.cap() + 2 * owed);
+        let (mut least, mut most) = (0, wanted);
+        while (most - least).abs() > 1 {
+            let middle = (least + most) / 2;
+            if self.pays(self.cost(middle)) { least = middle } else { most = middle }
+        }
+        least
+    }
+
+    /// Gives this command in codes to the motor. It must be [allowed](Self::allowed), or between zero and that,
+    /// and the tick is [booked](Self::book).
+    #[inline(always)]
+    pub fn give(&mut self, command: i32) {
+        self.give_at(command, self.cost(command));
+    }
+
+    /// The same with its cost.
+    #[inline(always)]
+    pub(super) fn give_at(&mut self, command: i32, cost: i64) {
+        let steps = command << STEP_BITS;
+        let lagging = self.lagging.first_mut();
+        let mean = lagging.map_or(steps, |lagging| lagging.give(steps, cost));
+        let begins = self.means.due().map_or(mean, |mean| mean as i32);
+        let mut cost = cost;
+        if LAGS == 0 {
+            // The reserve covers this, so that the level may become negative.
+            let change = begins.wrapping_sub(self.mean);
+            let price = (product(change, self.numbers.step_price) >> 32) as i32;
+            cost = cost.wrapping_add(product(change, price));
+        }
+        self.missing = self.missing.wrapping_add(cost);
+        self.mean = begins;
+        self.means.push(mean.into());
+    }
+
+    /// Whether the motor makes no torque, and no command is under way.
+    pub(super) fn is_over(&self) -> bool {
+        self.mean == 0 && self.to_come() == 0
+    }
+
+    /// Takes the energy of another tank that [is over](Self::is_over), at most that of this one. A torque under
+    /// way was paid at the price of the other's share.
+    pub(super) fn take_over(&mut self, last: &Self) {
+        // The last step of the position is known to the width of a count.
+        let unknown = product(magnitude(last.before), last.speed);
+        let energy = last.level() + last.numbers.owed - unknown;
+        let scaled = energy as f64 * (last.numbers.joules / self.numbers.joules);
+        // Above the rounding of these and of the reserves.
+        let level = (scaled - scaled.abs() * (1.0 - LESS) - 4.0) as i64 - self.numbers.owed;
+        self.missing = (self.cap() - level).clamp(0, self.cap() + 2 * self.numbers.owed);
+        self.before = 0;
+        self.give_back(true);
     }
 
     /// Whether the level may rise from now on.
     pub(super) fn give_back(&mut self, may_rise: bool) {
-        self.held = if may_rise { self.cap } else { self.level.smaller(self.cap) };
+        if may_rise {
+            (self.speed, self.power) = (self.numbers.speed, self.numbers.power);
+        } else {
+            let lost = product(magnitude(self.before), self.speed);
+            self.missing = self.missing.wrapping_add(lost);
+            (self.speed, self.power, self.before) = (0, 0, 0);
+        }
     }
 
     /// No energy is left, and none for errors of counts.
     pub(super) fn drain(&mut self) {
-        let owed = self.reserve / self.joules * (1.0 + 8.0 * R::ROUNDOFF);
-        self.level = self.level.smaller(R::nearest(-owed));
-        self.held = self.level;
+        self.missing = self.missing.max(self.cap() + self.numbers.owed);
     }
 
     /// The motor makes no torque from now on. What was paid for torques under way is lost; if they may have
     /// been more than that, so is the level.
     pub(super) fn forget(&mut self, at_rest: D, is_emptied: bool) {
         if is_emptied {
-            self.level = self.level.smaller(R::ZERO);
-            self.held = self.level;
+            self.missing = self.missing.max(self.cap());
         }
-        let zero = R::ZERO;
-        (self.mean, self.means, self.energies) = (zero, at_rest.clone(), at_rest.clone());
-        self.unfinished = at_rest;
-        let memory = &mut self.memory;
-        (memory.lagging, memory.before) = (zero, zero);
-        (memory.rest, memory.unfinished) = (zero, zero);
+        for lagging in &mut self.lagging {
+            *lagging = Lagging::at_rest(lagging.amplifier, &at_rest);
+        }
+        (self.mean, self.means) = (0, at_rest);
+    }
+
+    /// The largest level.
+    const fn cap(&self) -> i64 {
+        (self.numbers.cap as i64) << 32
     }
 
     /// The level above the reserve, with the energies to come.
-    pub(super) fn level(&self) -> R {
-        self.level.plus(self.to_come())
-    }
-
-    /// J for a level of 1, and for a level of zero.
-    pub(super) const fn joules(&self) -> [f64; 2] {
-        [self.joules, self.reserve]
-    }
-
-    /// The energy of the commands given so far that is still to come.
-    #[inline(always)]
-    fn to_come(&self) -> R {
-        let mut energy = self.energies.sum();
-        if !PLAIN {
-            let memory = &self.memory;
-            energy = energy.plus(memory.tail()).plus(memory.unfinished);
-        }
-        energy
-    }
-
-    /// The torque that the motor gets of a wanted torque in [range](Self::in_range).
-    #[inline(always)]
-    pub fn allowed(&self, wanted: R) -> R {
-        if self.pays(self.cost(wanted)) { wanted } else { self.affordable(wanted) }
-    }
-
-    /// Whether the level pays for a command that costs this much.
-    #[inline(always)]
-    pub(super) fn pays(&self, cost: R) -> bool {
-        cost <= self.level
-    }
-
-    /// What the command costs until the end of its response.
-    #[inline(always)]
-    pub(super) fn cost(&self, command: R) -> R {
-        let pulled = if PLAIN { command } else { command.plus(self.pull()).plus(self.pull()) };
-        command.times(pulled)
-    }
-
-    #[inline(always)]
-    fn pull(&self) -> R {
-        let Spread { pull: [lagging, before], .. } = self.memory;
-        self.memory.lagging.times(lagging).plus(self.memory.before.times(before))
-    }
-
-    /// The wanted torque within the host's largest; zero if it is no finite number. A torque passes here once,
-    /// where it arrives, and not in each tick.
-    pub fn in_range(&self, wanted: R) -> R {
-        if wanted.within(self.torque) {
-            wanted
-        } else if wanted.times(R::ZERO) != R::ZERO {
-            R::ZERO
-        } else if wanted > R::ZERO {
-            self.torque
-        } else {
-            self.torque.negated()
-        }
-    }
-
-    /// The largest command of the same sign that the level can pay.
-    #[cold]
-    #[inline(never)]
-    fn affordable(&self, wanted: R) -> R {
-        cold_path();
-        // The root below is of a positive number, and the interval between both roots has zero.
-        if self.level <= R::ZERO {
-            return R::ZERO;
-        }
-        let pull = if PLAIN { R::ZERO } else { self.pull() };
-        let square = self.level.plus(pull.times(pull));
-        let root = square.times(square.reciprocal_root()).times(self.below_root);
-        let (least, most) = (root.negated().minus(pull), root.minus(pull));
-        let command = wanted.smaller(most).larger(least);
-        if self.cost(command) <= self.level { command } else { R::ZERO }
-    }
-
-    /// Gives this command to the motor. It must be [allowed](Self::allowed), or between zero and that, and the
-    /// tick is [booked](Self::book).
-    #[inline(always)]
-    pub fn give(&mut self, command: R) {
-        self.give_at(command, self.cost(command));
-    }
-
-    /// The same with its cost.
-    #[inline(always)]
-    pub(super) fn give_at(&mut self, command: R, cost: R) {
-        let paid = self.level.minus(cost);
-        let (mean, energy) = if PLAIN {
-            (command.times(self.memory.first[0]), cost)
-        } else {
-            self.spread(command, cost)
-        };
-        let begins = self.means.due().unwrap_or(mean);
-        // The reserve covers this, so that the level may become negative.
-        let change = begins.minus(self.mean).magnitude();
-        let price = if PLAIN {
-            self.count_step.plus(change.times(self.step_price))
-        } else {
-            self.count_step
-        };
-        self.level = paid.minus(change.times(price));
-        self.mean = begins;
-        self.means.push(mean);
-        self.energies.push(energy);
-    }
-
-    /// The mean torque of the tick in which a command begins, and the energy of the command's period.
-    fn spread(&mut self, command: R, cost: R) -> (R, R) {
-        let memory = &mut self.memory;
-        let energy = cost.plus(memory.tail());
-        let step = memory.lagging.minus(command);
-        if memory.is_late {
-            let [own, both, squared] = memory.over;
-            let of_step = command.times(both).plus(step.times(squared));
-            let left = command.times(command).times(own).plus(step.times(of_step));
-            memory.unfinished = self.unfinished.due().unwrap_or(left);
-            self.unfinished.push(left);
-        }
-        let weighted =
-            |[own, lagging]: [R; 2]| command.times(own).plus(memory.lagging.times(lagging));
-        let mean = memory.rest.plus(weighted(memory.first));
-        let rest = weighted(memory.second);
-        let lagging = command.plus(step.times(memory.decay));
-        *memory = Spread { rest, lagging, before: command, ..*memory };
-        (mean, energy.minus(memory.tail()))
+    fn level(&self) -> i64 {
+        self.cap() - self.missing + self.to_come()
     }
 
     /// The level in J, from zero to the host's energy.
     pub fn energy(&self) -> f64 {
-        self.level.plus(self.to_come()).to_f64() * self.joules + self.reserve
+        (self.level() + self.numbers.owed) as f64 * self.numbers.joules
     }
 
-    /// The mean of the host's torque at the motor over the tick that begins, in units of torque.
+    /// The same, with less arithmetic.
+    pub(super) fn rounded_energy(&self) -> f32 {
+        (self.level() + self.numbers.owed) as f32 * self.numbers.joules as f32
+    }
+
+    /// The last command in codes.
+    #[inline(always)]
+    pub(super) fn given(&self) -> i32 {
+        let last = || self.means.waiting().last().map_or(self.mean, |&mean| mean as i32);
+        self.lagging.first().map_or_else(last, |lagging| lagging.before) >> STEP_BITS
+    }
+
+    /// N m of a code.
+    pub(super) const fn code(&self) -> f32 {
+        self.numbers.code
+    }
+
+    /// The mean of the host's torque at the motor over the tick that begins, in codes.
     pub fn mean(&self) -> f64 {
-        self.mean.to_f64() / self.scale()
-    }
-
-    fn scale(&self) -> f64 {
-        (self.memory.first[0].plus(self.memory.first[1]))
-            .plus(self.memory.second[0].plus(self.memory.second[1]))
-            .to_f64()
+        f64::from(self.mean) / f64::from(1 << STEP_BITS)
     }
 }
 
-impl<R: TankNumber> Spread<R> {
-    #[inline(always)]
-    fn tail(&self) -> R {
-        let [lagging, before] = self.tail;
-        let of_lag = self.lagging.times(self.lagging).times(lagging);
-        of_lag.plus(self.before.times(self.before).times(before))
+impl<D: DelayLine<i64>> Lagging<D> {
+    fn at_rest(amplifier: Amplifier, line: &D) -> Self {
+        let (energies, unfinished_later) = (line.clone(), line.clone());
+        Self { amplifier, torque: 0, before: 0, rest: 0, energies, unfinished: 0, unfinished_later }
     }
+
+    /// What a command costs.
+    fn cost(&self, command: i32) -> i64 {
+        let Amplifier { price, pull: [of_torque, of_before], .. } = self.amplifier;
+        let pulled = product(self.torque, of_torque) + product(self.before, of_before);
+        let sum = (product(command, price) + 2 * pulled) >> Amplifier::BITS;
+        // Above the error of both coefficients and the rounding.
+        let above = if command > 0 { 8 } else { -8 };
+        i64::from(command) * (sum + above)
+    }
+
+    /// Gives a command of this cost; returns the mean torque of the tick in which it begins.
+    fn give(&mut self, command: i32, cost: i64) -> i32 {
+        let Amplifier { decay, first, second, is_late, .. } = self.amplifier;
+        let tail = self.tail();
+        let step = self.torque - command;
+        let left = if is_late { self.left(command, step) } else { 0 };
+        self.unfinished = self.unfinished_later.due().unwrap_or(left);
+        self.unfinished_later.push(left);
+        let weighted = |[own, of_torque]: [i32; 2]| {
+            ((product(command, own) + product(self.torque, of_torque)) >> Amplifier::BITS) as i32
+        };
+        let mean = self.rest + weighted(first);
+        self.rest = weighted(second);
+        let one = 1_i64 << Amplifier::BITS;
+        self.torque = ((i64::from(command) * one + product(step, decay)) / one) as i32;
+        self.before = command;
+        self.energies.push(cost + tail - self.tail());
+        mean
+    }
+
+    /// The energy of a command in the second of the ticks in which it acts, from the torque at its begin less it.
+    fn left(&self, command: i32, step: i32) -> i64 {
+        let [own, both, squared] = self.amplifier.over;
+        // Above the error of the coefficient and the rounding.
+        let above = if command > 0 { 4 } else { -4 };
+        let of_both = i64::from(command) * ((product(step, both) >> Amplifier::BITS) + above);
+        of_square(command, own) + of_both + of_square(step, squared)
+    }
+
+    /// The energy that is still to come after the last command has ended.
+    fn tail(&self) -> i64 {
+        let [of_torque, of_before] = self.amplifier.tail;
+        of_square(self.torque, of_torque) + of_square(self.before, of_before)
+    }
+
+    /// The energy of the commands given so far that is still to come.
+    fn to_come(&self) -> i64 {
+        self.tail() + self.unfinished + self.energies.waiting().iter().sum::<i64>()
+    }
+}
+
+/// The exact product.
+#[inline(always)]
+const fn product(a: i32, b: i32) -> i64 {
+    a as i64 * b as i64
+}
+
+/// The number if it is not negative, otherwise a part of 2^32: a single instruction.
+#[inline(always)]
+const fn clamped(value: i64) -> i64 {
+    let high = (value >> 32) as i32;
+    ((high & !(high >> 31)) as i64) << 32 | (value as u32) as i64
+}
+
+/// The number without its sign.
+#[inline(always)]
+const fn magnitude(value: i32) -> i32 {
+    value.wrapping_abs()
+}
+
+/// A coefficient times a square, or a little more; zero for zero.
+const fn of_square(value: i32, coefficient: i32) -> i64 {
+    let value = value.unsigned_abs() as i64;
+    value * ((value * coefficient as i64 >> Amplifier::BITS) + 1)
 }

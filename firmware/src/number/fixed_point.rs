@@ -100,7 +100,7 @@ fn nearest(value: i64) -> (i32, bool) {
 }
 
 /// A number of 32 bits in two's complement.
-pub trait FixedPoint: Copy + PartialOrd + fmt::Debug + 'static {
+pub trait FixedPoint: Copy + Default + PartialOrd + fmt::Debug + 'static {
     /// The number of its fractional bits.
     type Frac: LeEqU32;
     /// Zero.

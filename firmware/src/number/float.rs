@@ -17,11 +17,6 @@ macro_rules! floating_point {
                 bounded(value, LARGEST, $format).map(|value| value as $float)
             }
 
-            #[inline(always)]
-            fn of_single(value: f32) -> Self {
-                Self::from(value)
-            }
-
             fn bound_from_f64(value: f64) -> Result<Self, OutOfRange> {
                 let nearest = Self::from_f64(value)?;
                 let above = f64::from(nearest) > value;

@@ -26,7 +26,7 @@ use core::fmt;
 use crate::text::{Piece, Text, push};
 
 /// A number format of the servo: `f32`, `f64`, or a [`fixed::FixedI32`], rounded or [`Truncated`].
-pub trait Number: Copy + PartialOrd + fmt::Debug + 'static {
+pub trait Number: Copy + Default + PartialOrd + fmt::Debug + 'static {
     /// A factor of a number: a gain, a compliance, a scale.
     type Coefficient: Copy + fmt::Debug;
     /// The format's name and resolution, for messages.
@@ -36,10 +36,6 @@ pub trait Number: Copy + PartialOrd + fmt::Debug + 'static {
 
     /// Rounds a value in SI units to the format; an error if it does not fit.
     fn from_f64(value: f64) -> Result<Self, OutOfRange>;
-    /// The number nearest to a host's torque in N m. No servo in fixed point has a host.
-    fn of_single(value: f32) -> Self {
-        Self::from_f64(f64::from(value)).unwrap_or(Self::ZERO)
-    }
     /// Rounds a positive bound towards zero, so that a number within the rounded bound is within the value.
     fn bound_from_f64(value: f64) -> Result<Self, OutOfRange>;
     /// The number in SI units, exactly.

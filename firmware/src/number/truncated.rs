@@ -9,7 +9,7 @@ use super::fixed_point::FixedPoint;
 /// A [`fixed::FixedI32`] whose angles and products are the largest numbers of the format that are not above
 /// the exact values. Its coefficients are those of the rounded format, and DAC codes are rounded to nearest
 /// in both.
-#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 pub struct Truncated<F>(F);
 
 impl<Frac: LeEqU32 + 'static> FixedPoint for Truncated<FixedI32<Frac>> {

@@ -255,15 +255,6 @@ impl<E: Rendering<N>, N: Number> Servo<E, N> {
         Output { code: DacCode::from_low_bits(code), limit }
     }
 
-    /// The code of this tick's torque with a host's torque in N m beside it, which is not within its limit.
-    /// It is not in the torque that the coupling is solved with: the scene's torque follows from the
-    /// positions alone.
-    #[inline(always)]
-    pub fn code_beside(&self, host: N) -> DacCode {
-        let torque = self.anticogging.add_to(self.torque).minus(host);
-        DacCode::from_low_bits(torque.codes_below(DacCode::MID_SCALE.get(), self.code_scale))
-    }
-
     /// The torque of coupling and environment within its limit, and the reason if it was limited;
     /// `otherwise` if not.
     #[inline(always)]

@@ -165,28 +165,35 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             tick = self.check_tick_timing(passed, raw, hardware, inbox);
         }
         // Control: from the count to the code of this tick.
+        self.rendering.host_mut().begin();
         let before = self.rendering.servo().low_count();
         let output = self.rendering.tick(raw, &self.energy);
         let count = self.rendering.servo().low_count();
         let step = count.wrapping_sub(before);
+        let (mut code, mut limit) = (output.code, output.limit);
+        if E::Host::IS_PRESENT {
+            // Beside the torque with which the coupling is solved: that of the scene follows from the positions
+            // alone. Before the faults, because fewer values are kept then: a step that is too far books what it
+            // should not, and empties the tank.
+            code = code.beside(self.rendering.host().wanted());
+            let refused = self.rendering.host_mut().refused(step);
+            if refused != 0 {
+                code = code.beside(-refused);
+                if limit != LimitReason::NotANumber {
+                    limit = LimitReason::Energy;
+                }
+            }
+        }
         if self.rendering.timing_limits().is_too_far(step) {
             self.check_jump(passed, step, hardware, inbox);
         }
         if let Some(event) = hardware.output_event() {
             self.on_output_event(event, hardware, inbox);
         }
-        if output.limit == LimitReason::NotANumber {
+        if limit == LimitReason::NotANumber {
             self.stop_on_nan(hardware, inbox);
         }
         let mut pending = inbox.pending();
-        let (mut code, mut limit) = (output.code, output.limit);
-        if E::Host::IS_PRESENT {
-            let (torque, is_refused) = self.rendering.host_mut().tick(step);
-            code = self.rendering.servo().code_beside(torque);
-            if is_refused {
-                limit = LimitReason::Energy;
-            }
-        }
         if self.state != State::Running {
             code = self.unless_disarmed(code);
             pending = u32::MAX;

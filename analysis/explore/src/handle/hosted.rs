@@ -53,9 +53,9 @@ impl Hosted {
         if report.verdict != Verdict::Certified {
             return Err(report.message);
         }
-        let given = if has_no_tank { unlimited(&budget) } else { budget };
         let (scene, output) = (&file.scene, OutputTiming::Simultaneous);
         let period = scene.timing.period;
+        let given = if has_no_tank { unlimited(&budget, period) } else { budget };
         let host = HostileHost::new(law, budget.torque);
         let sender = HostSender::new(host, period, transducers, count);
         let kind = (Format::F32, file.supply.is_some_and(|supply| supply.stores()));

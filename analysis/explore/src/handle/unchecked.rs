@@ -80,9 +80,4 @@ impl Controller for Unchecked {
     fn tick_at(&mut self, angle: f64) -> Result<f64, OutOfRange> {
         Ok(self.torque(angle).0)
     }
-
-    /// No host is beside a servo without proof.
-    fn code_beside(&self, _: f32) -> u16 {
-        DacCode::MID_SCALE.get()
-    }
 }

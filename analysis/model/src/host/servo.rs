@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use haptic_servo::dac::DacCode;
 use haptic_servo::host::{
     AnyHosted, BesideServo, HostChannel, HostError, HostTorque, HostWords, ServoNumbers, TickState,
 };
@@ -14,9 +15,12 @@ use haptic_servo::torque::LimitReason;
 use super::law::HostSender;
 use crate::controller::{Controller, Tick};
 
-/// A host without a budget: the same, with more energy than any motor has.
-pub const fn unlimited(host: &HostTorque) -> HostTorque {
-    HostTorque { energy: 1e12, ..*host }
+/// A host without a budget, beside a servo with this period in s: the same, with the energy of ten times its largest
+/// torque, and a supply that fills the tank in each tick.
+pub fn unlimited(host: &HostTorque, period: f64) -> HostTorque {
+    let HostTorque { energy, torque, damping, .. } = *host;
+    let enough = 100.0 * torque * torque * period / (4.0 * damping);
+    HostTorque { energy: energy.max(enough), power: 1e12, ..*host }
 }
 
 /// What the host did in a tick.
@@ -37,8 +41,10 @@ pub struct HostedServo<'a> {
     host: AnyHosted,
     channel: HostWords,
     sender: Option<HostSender>,
-    /// The torque that acts from the next count on, if torques are latched.
-    held: Option<f32>,
+    /// The torque in codes that acts from the next count on, if torques are latched.
+    held: Option<i32>,
+    /// N m of a code.
+    code: f64,
     count: i32,
     /// Ticks so far.
     number: u32,
@@ -94,7 +100,8 @@ impl<'a> HostedServo<'a> {
             host,
             channel: HostWords::EMPTY,
             sender: None,
-            held: (numbers.output == OutputTiming::Latched).then_some(0.0),
+            held: (numbers.output == OutputTiming::Latched).then_some(0),
+            code: numbers.full_scale / f64::from(DacCode::CODES_TO_FULL_SCALE),
             count: 0,
             number: 0,
             tick: HostTick { wanted: 0.0, given: 0.0, level },
@@ -119,7 +126,8 @@ impl<'a> HostedServo<'a> {
     /// Ticks without a motion and a command, as before a run.
     pub fn rest(&mut self, ticks: u32) {
         for _ in 0..ticks {
-            let _: (f32, bool) = self.host.tick(0);
+            self.host.begin();
+            self.host.refused(0);
         }
         self.number = ticks;
     }
@@ -128,7 +136,8 @@ impl<'a> HostedServo<'a> {
     pub fn follow(&mut self, ticks: &[(i32, bool)]) {
         for &(count, is_aligning) in ticks {
             let moved = count.wrapping_sub(std::mem::replace(&mut self.count, count));
-            let _: (f32, bool) = self.host.tick(moved);
+            self.host.begin();
+            self.host.refused(moved);
             self.host.wait(false);
             if is_aligning {
                 self.host.cut(false);
@@ -149,17 +158,16 @@ impl Controller for HostedServo<'_> {
         let mut tick = self.servo.tick(raw);
         let count = tick.count as i32;
         let moved = count.wrapping_sub(std::mem::replace(&mut self.count, count));
-        let (given, is_refused): (f32, bool) = self.host.tick(moved);
+        self.host.begin();
+        let (wanted, refused) = (self.host.wanted(), self.host.refused(moved));
+        let given = wanted - refused;
         let acting = self.held.as_mut().map_or(given, |held| std::mem::replace(held, given));
-        tick.code = self.servo.code_beside(acting);
-        if is_refused {
+        tick.code = DacCode::new(tick.code).map_or(tick.code, |code| code.beside(acting).get());
+        if refused != 0 {
             tick.limit = LimitReason::Energy;
         }
-        self.tick = HostTick {
-            wanted: f64::from(self.host.wanted()),
-            given: f64::from(given),
-            level: self.host.energy(),
-        };
+        let [wanted, given] = [wanted, given].map(|codes| f64::from(codes) * self.code);
+        self.tick = HostTick { wanted, given, level: self.host.energy() };
         let state = State::Running as u32;
         let taken = TickState { tick: self.number, count, opening: Some(0), state };
         self.host.exchange(&self.channel, taken);
@@ -172,9 +180,5 @@ impl Controller for HostedServo<'_> {
 
     fn tick_at(&mut self, angle: f64) -> Result<f64, OutOfRange> {
         self.servo.tick_at(angle)
-    }
-
-    fn code_beside(&self, torque: f32) -> u16 {
-        self.servo.code_beside(torque)
     }
 }

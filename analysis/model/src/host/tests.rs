@@ -26,7 +26,7 @@ fn file() -> SceneFile {
 fn most_taken(file: &SceneFile, law: HostLaw, output: OutputTiming, has_tank: bool) -> f64 {
     let (scene, host) = (&file.scene, file.host.unwrap());
     let transducers = file.transducers(None, None);
-    let budget = if has_tank { host } else { unlimited(&host) };
+    let budget = if has_tank { host } else { unlimited(&host, scene.timing.period) };
     // Beside any servo the tank holds; this one is certified without a lag only.
     let prompt = Scene { latency: Latency::NONE, ..*scene }.certify().unwrap();
     let servo = controller::<_, f32>(&prompt, &transducers).unwrap();

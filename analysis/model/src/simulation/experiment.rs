@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use haptic_servo::host::HostTorque;
+use haptic_servo::host::{HostTorque, Sampling};
 use haptic_servo::scene::Scene;
 
 use super::discrete_plant::{DiscretePlant, Discretization};
@@ -10,6 +10,7 @@ use super::error::SimulationError;
 use super::method::Method;
 use super::plant::Plant;
 use super::torque_signal::TorqueSignal;
+use crate::beside_host;
 use crate::device::Motion;
 use crate::disturbance::{Cogging, Disturbance};
 use crate::file::SceneFile;
@@ -49,6 +50,8 @@ pub struct Experiment {
 pub struct HostSignal {
     /// What it may do.
     pub budget: HostTorque,
+    /// How the servo reads positions and gives torques.
+    pub sampling: Sampling,
     /// What it wants.
     pub wanted: Vec<f64>,
 }
@@ -78,6 +81,7 @@ impl Experiment {
             encoder_step: file.encoder_step,
             host: file.host.map(|budget| HostSignal {
                 budget,
+                sampling: beside_host::sampling(file),
                 wanted: simulation.host.clone().unwrap_or_default(),
             }),
             ..Self::at_rest(file)

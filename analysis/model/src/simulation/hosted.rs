@@ -5,16 +5,18 @@ use haptic_servo::host::{HostResponse, Sampling, Tank};
 use haptic_servo::torque::LimitReason;
 
 use super::error::SimulationError;
-use super::experiment::Experiment;
+use super::experiment::{Experiment, HostSignal};
 
-/// A host and its tank, in `f64`, rad and N m.
+/// A host and its tank.
 #[derive(Debug)]
 pub struct Hosted {
-    tank: Tank<f64, VariableDelay<f64>, false>,
+    tank: Tank<VariableDelay<i64>, 1>,
     wanted: Vec<f64>,
     /// Its largest torque in N m.
     largest: f64,
-    position: Option<f64>,
+    sampling: Sampling,
+    /// The position in counts of the last tick.
+    count: Option<i64>,
 }
 
 /// What the host did in a sample.
@@ -37,34 +39,33 @@ impl Hosted {
     /// If there is no proof for a host in this experiment.
     pub fn new(experiment: &Experiment) -> Result<Option<Self>, SimulationError> {
         let Some(host) = &experiment.host else { return Ok(None) };
-        let count = experiment.encoder_step.unwrap_or(0.0);
-        let sampling = Sampling::simultaneous(&experiment.scene.timing, count);
-        let response = HostResponse::of(&host.budget, &experiment.scene.latency, &sampling)?;
-        let tank = Tank::new(&host.budget, &response, count, [1.0, 1.0])?;
-        Ok(Some(Self {
-            tank,
-            wanted: host.wanted.clone(),
-            largest: host.budget.torque,
-            position: None,
-        }))
+        let HostSignal { budget, sampling, wanted } = host.clone();
+        let response = HostResponse::of(&budget, &experiment.scene.latency, &sampling)?;
+        let tank = Tank::new(&budget, &response)?;
+        Ok(Some(Self { tank, wanted, largest: budget.torque, sampling, count: None }))
     }
 
     /// The tick of sample `k`, with the device read at `position` rad.
     pub fn tick(&mut self, k: usize, position: f64) -> HostSample {
-        if let Some(before) = self.position.replace(position) {
-            self.tank.book(position - before);
+        let Sampling { count, code, .. } = self.sampling;
+        // A position that an encoder shows is at the edge of a count.
+        let count = (position / count + 1e-6).floor() as i64;
+        if let Some(before) = self.count.replace(count) {
+            self.tank.book((count - before) as i32);
         }
         let energy = self.tank.energy();
         let wanted = self.wanted.get(k).copied().unwrap_or(0.0);
-        let command = self.tank.allowed(self.tank.in_range(wanted));
-        self.tank.give(command);
-        let limit = if command == wanted {
-            LimitReason::None
-        } else if command.abs() == self.largest {
+        let codes = self.tank.in_range(wanted as f32);
+        let given = self.tank.allowed(codes);
+        self.tank.give(given);
+        let limit = if given != codes {
+            LimitReason::Energy
+        } else if wanted.abs() > self.largest {
             LimitReason::Torque
         } else {
-            LimitReason::Energy
+            LimitReason::None
         };
-        HostSample { command, torque: self.tank.mean(), energy, limit }
+        let [command, torque] = [f64::from(given), self.tank.mean()].map(|codes| codes * code);
+        HostSample { command, torque, energy, limit }
     }
 }

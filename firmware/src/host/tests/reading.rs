@@ -17,6 +17,7 @@ impl Search {
         // The reserve for steps of this torque is below the energy.
         let host = HostTorque { torque: 0.4, ..HOST };
         let reading = late as f64 / PARTS as f64 * PERIOD;
+        let count = if count > 0.0 { count } else { COUNT };
         let sampling = Sampling { reading, count, ticks: 1, ..sampling() };
         let response = HostResponse::of(&host, &Latency::NONE, &sampling).unwrap();
         let mut response = response.without_memory(&host).unwrap();
@@ -28,11 +29,10 @@ impl Search {
     }
 
     /// The most energy that the hand has out at any time, over the budget until then.
-    fn most<R: TankNumber>(&self, run: usize) -> f64 {
+    fn most(&self, run: usize) -> f64 {
         let HostTorque { energy, power, damping, torque, .. } = self.host;
         let count = self.sampling.count;
-        let mut tank: Tank<R, FixedDelay<R, 1>, true> =
-            Tank::new(&self.host, &self.response, count, [1.0, 1.0]).unwrap();
+        let mut tank: Tank<FixedDelay<i64, 1>, 0> = Tank::new(&self.host, &self.response).unwrap();
         let share = 0.5 * self.response.speed * PERIOD;
         let mut motor = Motor::new(0, 0.0, 0);
         motor.commands.push(0.0);
@@ -49,9 +49,9 @@ impl Search {
                 3 => -torque * moved.signum(),
                 _ => -size * 1e3 * position,
             };
-            let command = tank.allowed(tank.in_range(R::nearest(wanted)));
+            let command = tank.allowed(tank.in_range(wanted as f32));
             tank.give(command);
-            motor.commands.push(command.to_f64());
+            motor.commands.push(f64::from(command) * CODE);
             // From this count to the next.
             let late = match run % 3 {
                 0 => self.late,
@@ -68,7 +68,7 @@ impl Search {
             }
             let time = parts as f64 / PARTS as f64 * PERIOD;
             // The step with the most that the tank does not book, and the step with the most for the hand.
-            let unseen = 0.5 * (once - tank.mean()) / (damping / time - share / PERIOD);
+            let unseen = 0.5 * (once - (tank.mean() * CODE)) / (damping / time - share / PERIOD);
             let largest = 0.5 * once * time / damping;
             let step = match run % 4 {
                 // The hand moves within the tick, and is back.
@@ -81,10 +81,10 @@ impl Search {
             taken += once * step - damping * step * step / time
                 + 0.25 * time * (twice - once * once) / damping;
             most = most.max(taken / (energy + power * PERIOD * (tick + 1) as f64));
-            let counted = |x: f64| if count > 0.0 { (x / count).floor() * count } else { x };
-            moved = counted(position + step) - counted(position);
+            let steps = (((position + step) / count).floor() - (position / count).floor()) as i32;
+            moved = f64::from(steps) * count;
             position += step;
-            tank.book(R::nearest(moved));
+            tank.book(steps);
         }
         most
     }
@@ -92,7 +92,7 @@ impl Search {
     /// The most of many hosts, hands and late counts.
     fn most_of_many(late: usize, count: f64, debits_steps: bool) -> f64 {
         let search = Self::new(late, count, debits_steps);
-        let any = |run| if run % 7 < 4 { search.most::<f32>(run) } else { search.most::<f64>(run) };
+        let any = |run| search.most(run);
         (0..600).map(any).fold(0.0, f64::max)
     }
 }

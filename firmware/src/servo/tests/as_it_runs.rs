@@ -13,7 +13,7 @@ use crate::passivity::transfer::Transfer;
 /// their rounding is left of it.
 macro_rules! coarse {
     ($name:ident, $format:expr) => {
-        #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+        #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
         struct $name(f64);
 
         impl Number for $name {

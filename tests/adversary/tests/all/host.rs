@@ -15,6 +15,8 @@ use rand_chacha::ChaCha8Rng;
 const PERIOD: f64 = 1e-3;
 const DELTA: f64 = 0.022;
 const TICKS: usize = 1500;
+/// Width in rad of a count whose error is small.
+const FINE: f64 = 2e-5;
 
 /// A debit of the tank.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,9 +121,11 @@ fn certified_spring(damping: f64, latency: Latency) -> f64 {
 struct Case {
     host: HostTorque,
     updates: Option<Updates>,
-    /// Time constant of the amplifier in s, and width of a count in rad; 0: none.
+    /// Time constant of the amplifier in s, 0 without one; and width of a count in rad.
     lag: f64,
     count: f64,
+    /// Parts of a count that the tank takes for one.
+    parts: i32,
     /// Stiffness of the scene's spring.
     spring: f64,
     /// Of device and hand together.
@@ -147,7 +151,7 @@ impl Case {
         let count = match without {
             Some(Debit::Counts) => 10_f64.powf(random.random_range(-4.0..-2.5)),
             _ if counts => 10_f64.powf(random.random_range(-6.0..-4.0)),
-            _ => 0.0,
+            _ => FINE,
         };
         // The torque of the spring lags in the bridge alone.
         let spring = match updates {
@@ -162,12 +166,13 @@ impl Case {
                 energy: 10_f64.powf(random.random_range(-2.5..0.0)),
                 power: if has_power { random.random_range(0.0..1.0) } else { 0.0 },
                 damping: share,
-                torque: if count > 0.0 { 0.5 } else { 1e3 },
+                torque: if count == FINE { 20.0 } else { 0.5 },
                 timeout: 0.1,
             },
             updates,
             lag,
             count,
+            parts: if without == Some(Debit::Counts) { 64 } else { 1 },
             spring,
             inertia: 2.2e-5 * 10_f64.powf(random.random_range(0.0..2.5)),
             stiffness: if is_held { 10_f64.powf(random.random_range(-1.0..2.5)) } else { 0.0 },
@@ -175,9 +180,8 @@ impl Case {
     }
 
     /// The tank, without a debit; `None` if the energy is less than the counts can cost.
-    fn tank(&self, without: Option<Debit>) -> Option<Tank<f64, VariableDelay<f64>, false>> {
+    fn tank(&self, without: Option<Debit>) -> Option<Tank<VariableDelay<i64>, 1>> {
         let lag = if without == Some(Debit::Lag) { 0.0 } else { self.lag };
-        let count = if without == Some(Debit::Counts) { 0.0 } else { self.count };
         let timing = Timing { period: PERIOD, worst_period: None };
         let latency = |updates: Updates| updates.latency(lag);
         let mut latency =
@@ -188,7 +192,9 @@ impl Case {
             _ => {}
         }
         let ticks = usize::from(self.updates.is_some_and(|updates| updates.is_latched));
-        let sampling = Sampling { ticks, ..Sampling::simultaneous(&timing, count) };
+        let count = self.count / f64::from(self.parts);
+        let sampling =
+            Sampling { ticks, ..Sampling::simultaneous(&timing, count, self.code()) };
         let mut response = HostResponse::of(&self.host, &latency, &sampling).ok()?;
         if without == Some(Debit::Tail) {
             // Of the cost of a command only the part within its own period.
@@ -196,7 +202,7 @@ impl Case {
             response.price -= response.tail[0] * gone * gone;
             response.pull[0] -= response.tail[0] * gone * left;
         }
-        Tank::new(&self.host, &response, count, [1.0, 1.0]).ok()
+        Tank::new(&self.host, &response).ok()
     }
 
     /// Time in s of a step in which the amplifier does not change what it does.
@@ -204,8 +210,13 @@ impl Case {
         self.updates.map_or(PERIOD, |updates| PERIOD / f64::from(updates.count))
     }
 
-    fn counted(&self, x: f64) -> f64 {
-        if self.count > 0.0 { (x / self.count).floor() * self.count } else { x }
+    /// N m of a code of the DAC.
+    fn code(&self) -> f64 {
+        self.host.torque / 1791.0
+    }
+
+    fn counted(&self, x: f64) -> i32 {
+        (x / self.count).floor() as i32
     }
 }
 
@@ -280,17 +291,19 @@ fn run(random: &mut ChaCha8Rng, without: Option<Debit>) -> f64 {
         std::array::from_fn(|i| (0..5).map(|j| motion[i][j] * state[j]).sum())
     };
     let mut wish = Wish::draw(random, (stiffness / inertia).sqrt() * PERIOD);
-    let (mut state, mut before, mut most) = ([0.0; 5], 0.0, 0.0_f64);
+    let (mut state, mut before, mut most) = ([0.0; 5], 0, 0.0_f64);
     let mut bridge = Bridge::default();
     for tick in 0..TICKS {
-        let x = case.counted(state[0]);
-        let moved = x - before;
+        let count = case.counted(state[0]);
+        let steps = count - before;
         if tick > 0 {
-            tank.book(moved);
+            tank.book(steps * case.parts);
         }
-        let command = tank.allowed(tank.in_range(wish.torque(tick, x, moved)));
+        let [x, moved] = [count, steps].map(|counts| f64::from(counts) * case.count);
+        let command = tank.allowed(tank.in_range(wish.torque(tick, x, moved) as f32));
         tank.give(command);
-        before = x;
+        before = count;
+        let command = f64::from(command) * case.code();
         let spring = -case.spring * state[0];
         if let Some(updates) = &case.updates {
             // The torque of the spring is that of the count before, and the host's may be, too.
