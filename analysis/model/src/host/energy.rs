@@ -88,7 +88,7 @@ impl HostEnergy {
         let (mut once, mut twice, step) = (0.0, 0.0, amplifier.between());
         for _ in 0..amplifier.in_time(length) {
             let from = self.torque;
-            let to = from + amplifier.slope() * step * (command - from);
+            let to = from + amplifier.slope(0.0) * step * (command - from);
             once += 0.5 * (from + to) * step;
             twice += (from * from + from * to + to * to) / 3.0 * step;
             self.torque = to;
