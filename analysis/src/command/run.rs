@@ -355,9 +355,15 @@ impl RunSetup {
             return Err(SimulationError::Readings { sample, time, allowed }.into());
         }
         let is_on_board = matches!(arguments.target, Target::Board(_));
+        let has_bridge = match &self.program {
+            RunProgram::Named(program) => program.bridge.is_some(),
+            RunProgram::OfFile(program) => {
+                program.as_ref().is_some_and(|program| program.bridge.is_some())
+            }
+        };
         let why = match () {
             () if self.dropped == Missed::None => return Ok(()),
-            () if is_on_board && self.has_bridge => {
+            () if is_on_board && has_bridge => {
                 "its virtual bridge reads an encoder that does not fail"
             }
             () if !leaves_out => return Ok(()),

@@ -131,12 +131,18 @@ mod tests {
         Stream::new(&host, 1e-3)
     }
 
+    /// The wanted codes of the next tick.
+    fn next(stream: &mut Stream) -> i32 {
+        stream.advance();
+        stream.wanted()
+    }
+
     #[test]
     fn a_stale_torque_is_zero_after_the_timeout() {
         for ramp in [0, 1, 4, 10, u16::MAX] {
             let mut stream = stream();
             stream.take(1000, ramp, 0);
-            let torques: std::vec::Vec<_> = (0..40).map(|_| stream.next()).collect();
+            let torques: std::vec::Vec<_> = (0..40).map(|_| next(&mut stream)).collect();
             let reached = torques.iter().position(|torque| *torque == 1000).unwrap();
             assert_eq!(reached, usize::from(ramp.clamp(1, 10)) - 1, "{ramp}");
             assert!(
@@ -150,10 +156,10 @@ mod tests {
     fn the_last_command_wins() {
         let mut stream = stream();
         stream.take(1000, 4, 0);
-        stream.next();
+        next(&mut stream);
         stream.take(-500, 0, 0);
-        assert_eq!(stream.next(), -500);
+        assert_eq!(next(&mut stream), -500);
         stream.rest();
-        assert!((0..100).all(|_| stream.next() == 0));
+        assert!((0..100).all(|_| next(&mut stream) == 0));
     }
 }
