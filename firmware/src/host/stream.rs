@@ -97,7 +97,8 @@ impl Stream {
 
     /// Keeps to this torque in steps from now on.
     pub fn limit(&mut self, most: i32) {
-        (self.wanted, self.target) = (self.wanted.clamp(-most, most), self.target.clamp(-most, most));
+        (self.wanted, self.target) =
+            (self.wanted.clamp(-most, most), self.target.clamp(-most, most));
         self.step = (self.target - self.wanted) / self.left.clamp(1, LONGEST_RAMP) as i32;
     }
 

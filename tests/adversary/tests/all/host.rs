@@ -193,8 +193,7 @@ impl Case {
         }
         let ticks = usize::from(self.updates.is_some_and(|updates| updates.is_latched));
         let count = self.count / f64::from(self.parts);
-        let sampling =
-            Sampling { ticks, ..Sampling::simultaneous(&timing, count, self.code()) };
+        let sampling = Sampling { ticks, ..Sampling::simultaneous(&timing, count, self.code()) };
         let mut response = HostResponse::of(&self.host, &latency, &sampling).ok()?;
         if without == Some(Debit::Tail) {
             // Of the cost of a command only the part within its own period.
