@@ -4,6 +4,10 @@
 //! [`Interface::words`] words in each period, and gives the received words to [`Chip::decode`]. [`Readings`] then
 //! holds the last angle over as many failed transfers as the scene states.
 //!
+//! The driver crates that exist for them (`mt6701` 0.2.5, `as5048a` 0.2.1) begin each transfer in the program, by
+//! `embedded-hal`, and check neither checksum nor parity of what they receive. So they do not fit a transfer that a
+//! timer begins, nor a certificate that counts failed readings.
+//!
 //! A statement that is marked "not confirmed" was not read in a data sheet: read it there before a certificate
 //! rests on it.
 
