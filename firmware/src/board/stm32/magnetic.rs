@@ -5,8 +5,8 @@
 //!   its event         ---- DMA 2 may move as many words to the SPI as a transfer has
 //!                          DMA 1 stores each word received
 //!   its event after the last one ---- DMA 4 writes CR1 until SPE is off: releases the chip
-//! DMA1_CHANNEL1       the last word is there: the servo's tick, with the count of the update, or [`take`] by whoever
-//!                     needs the position, as the updates of a bridge do
+//! DMA1_CHANNEL1       the last word is there: the servo's tick, with the count of the update, or [`take`] by
+//!                     another interrupt that needs the position, as that of a bridge
 //! ```
 //!
 //! An event of one channel of the multiplexer is the synchronisation of another, or triggers a generator of requests
