@@ -15,8 +15,8 @@
 //!
 //! # Whole numbers
 //!
-//! Positions are counts, and commands whole codes of the DAC, so that the torque of the codes is the one that
-//! is booked. A torque is a number of *steps*, `2^-14` codes, and an energy has the unit of a squared step over
+//! Positions are counts, and commands whole codes of the DAC, so that the booked torque is that of the
+//! codes. A torque is a number of *steps*, `2^-14` codes, and an energy has the unit of a squared step over
 //! a period, divided by four times the share. With `S` steps for a count, the first term is the square of `y =
 //! S d - m`, and a command without memory costs its square: nothing is rounded but `S`, the cap and the power,
 //! once and down.
