@@ -454,12 +454,8 @@ fn a_word_that_is_lost_is_a_fault_and_the_next_transfers_are_in_step() {
     bench.board_mut().read(DATA, 2);
     enable(&mut bench, RECEIVES, true);
     bench.run(3);
-    let error = ReadingError::Missing as u32;
     let told = bench.fault();
-    assert!(
-        matches!(told, Some(Fault::EncoderReading { error: it, .. }) if it == error),
-        "{told:?}"
-    );
+    assert!(matches!(told, Some(Fault::EncoderReading { .. })), "{told:?}");
     bench.run(20);
     bench.armed();
     bench.run(OPEN);
