@@ -165,7 +165,6 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             tick = self.check_tick_timing(passed, raw, hardware, inbox);
         }
         // Control: from the count to the code of this tick.
-        self.rendering.host_mut().begin();
         let before = self.rendering.servo().low_count();
         let output = self.rendering.tick(raw, &self.energy);
         let count = self.rendering.servo().low_count();
@@ -175,7 +174,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             // Beside the torque with which the coupling is solved: that of the scene follows from the positions
             // alone. Before the faults, because fewer values are kept then: a step that is too far books what it
             // should not, and empties the tank.
-            code = code.beside(self.rendering.host().wanted());
+            code = code.beside(self.rendering.host_mut().begin());
             let refused = self.rendering.host_mut().refused(step);
             if refused != 0 {
                 code = code.beside(-refused);
@@ -208,8 +207,9 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         }
         // Bookkeeping: energy, requests and states, watchdog, telemetry.
         self.energy.observe::<M>(step, code);
-        let link_due = tick.wrapping_sub(self.link_deadline).cast_signed() >= 0;
-        if pending != 0 || link_due {
+        // A host's due tick is at most the link's.
+        let due = self.rendering.host().due().unwrap_or(self.link_deadline);
+        if pending != 0 || tick.wrapping_sub(due).cast_signed() >= 0 {
             self.run_state_machine(hardware, inbox, frames.dropped());
         }
         hardware.feed_watchdog();
