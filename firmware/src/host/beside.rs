@@ -1,7 +1,6 @@
 //! The host beside a servo: its tank in the tick, and its commands and reports below the tick.
 
 use core::fmt;
-use core::hint::cold_path;
 
 use super::channel::{HostChannel, HostWords};
 use super::stream::Stream;
@@ -429,16 +428,6 @@ impl<const TICKS: usize, const LAGS: usize> Hosted<TICKS, LAGS> {
             self.stream.take(torque, (rest >> 16) as u16, opening, tick.tick);
         }
     }
-
-    /// Gives what the level pays of the wanted torque; returns the rest.
-    #[cold]
-    #[inline(never)]
-    fn refuse(&mut self) -> i32 {
-        let wanted = self.stream.wanted();
-        let given = self.tank.allowed(wanted);
-        self.tank.give(given);
-        wanted - given
-    }
 }
 
 impl<const TICKS: usize, const LAGS: usize> BesideServo for Hosted<TICKS, LAGS> {
@@ -496,15 +485,7 @@ impl<const TICKS: usize, const LAGS: usize> BesideServo for Hosted<TICKS, LAGS> 
 
     #[inline(always)]
     fn refused(&mut self, moved: i32) -> i32 {
-        self.tank.book(moved);
-        let wanted = self.stream.wanted();
-        let cost = self.tank.cost(wanted);
-        if !self.tank.pays(cost) {
-            cold_path();
-            return self.refuse();
-        }
-        self.tank.give_at(wanted, cost);
-        0
+        self.tank.refused(moved, self.stream.wanted())
     }
 
     fn wait(&mut self, may_give: bool) {

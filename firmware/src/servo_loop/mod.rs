@@ -170,10 +170,13 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         let count = self.rendering.servo().low_count();
         let step = count.wrapping_sub(before);
         let (mut code, mut limit) = (output.code, output.limit);
+        if self.rendering.timing_limits().is_too_far(step) {
+            self.check_jump(passed, step, hardware, inbox);
+        }
         if E::Host::IS_PRESENT {
             // Beside the torque with which the coupling is solved: that of the scene follows from the positions
-            // alone. Before the faults, because fewer values are kept then: a step that is too far books what it
-            // should not, and empties the tank.
+            // alone. After the check of its step, which empties the tank where it stops the servo, and before the
+            // other faults, because fewer values are kept then.
             code = code.beside(self.rendering.host_mut().begin());
             let refused = self.rendering.host_mut().refused(step);
             if refused != 0 {
@@ -182,9 +185,6 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
                     limit = LimitReason::Energy;
                 }
             }
-        }
-        if self.rendering.timing_limits().is_too_far(step) {
-            self.check_jump(passed, step, hardware, inbox);
         }
         if let Some(event) = hardware.output_event() {
             self.on_output_event(event, hardware, inbox);
