@@ -401,8 +401,11 @@ impl<D: DelayLine<i64>, const LAGS: usize> Tank<D, LAGS> {
         if LAGS == 0 {
             // The reserve covers this, so that the level may become negative.
             let change = begins.wrapping_sub(self.mean);
-            let price = (product(change, self.numbers.step_price) >> 32) as i32;
-            missing = missing.wrapping_add(product(change, price));
+            // Most torques are held.
+            if change != 0 {
+                let price = (product(change, self.numbers.step_price) >> 32) as i32;
+                missing = missing.wrapping_add(product(change, price));
+            }
         }
         self.missing = missing;
         self.mean = begins;

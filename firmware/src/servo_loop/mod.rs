@@ -205,6 +205,11 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         if M::TIMING.is_at_phase() {
             slack = self.slack(hardware, inbox);
         }
+        // Beside a host these are read again: its tank leaves no register to keep them in.
+        let mut count = count;
+        if E::Host::IS_PRESENT {
+            (tick, count) = (self.tick, self.rendering.servo().low_count());
+        }
         // Bookkeeping: energy, requests and states, watchdog, telemetry.
         self.energy.observe::<M>(step, code);
         // A host's due tick is at most the link's.
