@@ -87,10 +87,11 @@ impl<E: Copy> Program<E> {
     {
         let Some(host) = E::HOST else { return };
         let Self { scene, transducers, rendering, .. } = self;
-        let (cogging, times) = (E::AGAINST_COGGING, (output, N::FORMAT));
+        let cogging = E::AGAINST_COGGING;
         let times_of_host = HostTimes::of(&scene.latency, scene.timing.period);
         // Transducers that no board can have are another error.
-        if let Ok(servo) = ServoNumbers::of(scene, cogging, margin, transducers, rendering, times) {
+        if let Ok(servo) = ServoNumbers::of(scene, cogging, margin, transducers, rendering, output)
+        {
             or_refuse!(HostResponse::beside(&host, &servo, times_of_host));
         }
     }

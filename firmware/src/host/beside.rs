@@ -10,7 +10,6 @@ use crate::build_error::BuildError;
 use crate::current::{HeatStep, MAY_HAVE_BRIDGE};
 use crate::environment::FixedDelay;
 use crate::latency::Latency;
-use crate::number::Format;
 use crate::output_timing::OutputTiming;
 use crate::scene::{Scene, Timing};
 use crate::servo::RenderingOptions;
@@ -87,8 +86,6 @@ pub struct ServoNumbers<'a> {
     pub output: OutputTiming,
     /// An encoder count in rad.
     pub radians_per_count: f64,
-    /// The servo's number format.
-    pub format: Format,
     /// Whether a board's own bridge drives the motor, whose supply takes no energy back.
     pub stores: bool,
 }
@@ -105,7 +102,7 @@ impl<'a> ServoNumbers<'a> {
         margin: Option<f64>,
         transducers: &Transducers,
         options: &RenderingOptions,
-        (output, format): (OutputTiming, Format),
+        output: OutputTiming,
     ) -> Result<Self, BuildError> {
         Ok(Self {
             latency: &scene.latency,
@@ -119,7 +116,6 @@ impl<'a> ServoNumbers<'a> {
             fade: options.fade,
             output,
             radians_per_count: ok!(transducers.radians_per_count()),
-            format,
             stores: options.returned.is_some(),
         })
     }

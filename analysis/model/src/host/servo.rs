@@ -81,7 +81,6 @@ impl<'a> HostedServo<'a> {
             fade: RenderingOptions::DEFAULT.fade,
             output,
             radians_per_count: TAU / transducers.counts_per_turn,
-            format,
             stores,
         };
         Self::beside(servo, host, &numbers)
