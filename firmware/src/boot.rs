@@ -79,7 +79,7 @@ impl<E: Copy> Program<E> {
     }
 
     /// For constants: a compile error if the scene's host may not stand beside it, which leaves a margin in
-    /// N m s/rad, if one is known, with this output in the number format `N`.
+    /// N m s/rad, if one is known, with this output.
     #[track_caller]
     pub const fn check_host<N: Number>(&self, margin: Option<f64>, output: OutputTiming)
     where

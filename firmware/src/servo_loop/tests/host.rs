@@ -313,7 +313,8 @@ fn a_hot_bridge_lowers_the_host_before_the_scene() {
     let (frames, taken) = ticks(&mut run, Some(OutputEvent::Heat(HeatStep::Lower)), 79, PRESSED);
     for (tick, frame) in frames.iter().enumerate() {
         let left = 0.4 - 0.005 * tick as f64;
-        assert!((torque(frame) + 1.0 + left).abs() < 1.1 * STEP, "{tick}: {frame:?}");
+        // Both torques are whole codes.
+        assert!((torque(frame) + 1.0 + left).abs() < 2.0 * STEP, "{tick}: {frame:?}");
         assert_eq!(frame.limit, LimitReason::Torque);
     }
     assert!(taken.torque.abs() < 0.012 && taken.refused < -0.38, "{taken:?}");
