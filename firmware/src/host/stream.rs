@@ -99,9 +99,10 @@ impl Stream {
         self.ramp(0, ticks.clamp(1, LONGEST_RAMP), Then::Rest, tick);
     }
 
-    /// The larger of the present torque and of that to come, in steps without the sign.
+    /// The larger of the present torque and of that to come, in steps without the sign; the largest with the same
+    /// codes, so that a limit that falls by parts of a code each tick keeps them.
     pub fn largest(&self) -> i32 {
-        self.wanted.abs().max(self.target.abs())
+        self.wanted.abs().max(self.target.abs()) | ((1 << STEP_BITS) - 1)
     }
 
     /// Keeps to this torque in steps from this tick on.
