@@ -576,5 +576,5 @@ const fn magnitude(value: i32) -> i32 {
 /// A coefficient times a square, or a little more; zero for zero.
 const fn of_square(value: i32, coefficient: i32) -> i64 {
     let value = value.unsigned_abs() as i64;
-    value * ((value * coefficient as i64 >> Amplifier::BITS) + 1)
+    value * (((value * coefficient as i64) >> Amplifier::BITS) + 1)
 }
