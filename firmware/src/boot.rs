@@ -79,7 +79,7 @@ impl<E: Copy> Program<E> {
     }
 
     /// For constants: a compile error if the scene's host may not stand beside it, which leaves a margin in
-    /// N m s/rad, if one is known, with this output in the number format `N`.
+    /// N m s/rad, if one is known, with this output.
     #[track_caller]
     pub const fn check_host<N: Number>(&self, margin: Option<f64>, output: OutputTiming)
     where
@@ -87,10 +87,11 @@ impl<E: Copy> Program<E> {
     {
         let Some(host) = E::HOST else { return };
         let Self { scene, transducers, rendering, .. } = self;
-        let (cogging, times) = (E::AGAINST_COGGING, (output, N::FORMAT));
+        let cogging = E::AGAINST_COGGING;
         let times_of_host = HostTimes::of(&scene.latency, scene.timing.period);
         // Transducers that no board can have are another error.
-        if let Ok(servo) = ServoNumbers::of(scene, cogging, margin, transducers, rendering, times) {
+        if let Ok(servo) = ServoNumbers::of(scene, cogging, margin, transducers, rendering, output)
+        {
             or_refuse!(HostResponse::beside(&host, &servo, times_of_host));
         }
     }

@@ -58,12 +58,12 @@ impl BesideServo for AnyHosted {
         })
     }
 
-    fn begin(&mut self) {
-        each!(self, hosted => hosted.begin());
+    fn begin(&mut self) -> i32 {
+        each!(self, hosted => hosted.begin())
     }
 
-    fn wanted(&self) -> i32 {
-        each!(self, hosted => hosted.wanted())
+    fn due(&self) -> Option<u32> {
+        each!(self, hosted => hosted.due())
     }
 
     fn refused(&mut self, moved: i32) -> i32 {
@@ -82,8 +82,8 @@ impl BesideServo for AnyHosted {
         each!(self, hosted => hosted.wait(may_give));
     }
 
-    fn fade_out(&mut self, steps: u32) {
-        each!(self, hosted => hosted.fade_out(steps));
+    fn fade_out(&mut self, steps: u32, tick: u32) {
+        each!(self, hosted => hosted.fade_out(steps, tick));
     }
 
     fn is_at_rest(&self) -> bool {
@@ -119,8 +119,8 @@ impl BesideServo for AnyHosted {
         each!(self, hosted => hosted.drain());
     }
 
-    fn step_by_heat(&mut self, step: HeatStep) -> bool {
-        each!(self, hosted => hosted.step_by_heat(step))
+    fn step_by_heat(&mut self, step: HeatStep, tick: u32) -> bool {
+        each!(self, hosted => hosted.step_by_heat(step, tick))
     }
 
     fn exchange(&mut self, channel: &HostWords, tick: TickState) {

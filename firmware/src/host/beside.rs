@@ -1,7 +1,6 @@
 //! The host beside a servo: its tank in the tick, and its commands and reports below the tick.
 
 use core::fmt;
-use core::hint::cold_path;
 
 use super::channel::{HostChannel, HostWords};
 use super::stream::Stream;
@@ -11,7 +10,6 @@ use crate::build_error::BuildError;
 use crate::current::{HeatStep, MAY_HAVE_BRIDGE};
 use crate::environment::FixedDelay;
 use crate::latency::Latency;
-use crate::number::Format;
 use crate::output_timing::OutputTiming;
 use crate::scene::{Scene, Timing};
 use crate::servo::RenderingOptions;
@@ -65,6 +63,8 @@ pub struct TickState {
     pub opening: Option<u32>,
     /// The servo's state as a number.
     pub state: u32,
+    /// The tick in which the servo looks at its link again.
+    pub deadline: u32,
 }
 
 /// What a host needs of a servo.
@@ -86,8 +86,6 @@ pub struct ServoNumbers<'a> {
     pub output: OutputTiming,
     /// An encoder count in rad.
     pub radians_per_count: f64,
-    /// The servo's number format.
-    pub format: Format,
     /// Whether a board's own bridge drives the motor, whose supply takes no energy back.
     pub stores: bool,
 }
@@ -104,7 +102,7 @@ impl<'a> ServoNumbers<'a> {
         margin: Option<f64>,
         transducers: &Transducers,
         options: &RenderingOptions,
-        (output, format): (OutputTiming, Format),
+        output: OutputTiming,
     ) -> Result<Self, BuildError> {
         Ok(Self {
             latency: &scene.latency,
@@ -118,7 +116,6 @@ impl<'a> ServoNumbers<'a> {
             fade: options.fade,
             output,
             radians_per_count: ok!(transducers.radians_per_count()),
-            format,
             stores: options.returned.is_some(),
         })
     }
@@ -150,18 +147,18 @@ pub trait BesideServo: Clone + fmt::Debug {
     fn host(budget: &Self::Budget) -> Option<HostTorque>;
     /// A budget from data.
     fn budget(host: HostTorque) -> Self::Budget;
-    /// Begins a tick.
-    fn begin(&mut self);
-    /// The torque in codes of the DAC that the host wants in this tick.
-    fn wanted(&self) -> i32;
+    /// Begins a tick: the torque in codes of the DAC that the host wants in it.
+    fn begin(&mut self) -> i32;
+    /// The tick with whose end an [exchange](Self::exchange) is due; `None` without a host.
+    fn due(&self) -> Option<u32>;
     /// Ends the tick before, in which the position moved by so many counts; returns the codes that the host wants
     /// and does not get.
     fn refused(&mut self, moved: i32) -> i32;
     /// A tick that is not a usual one; unless the host may give a torque in it, it wants none until the next
     /// command.
     fn wait(&mut self, may_give: bool);
-    /// Fades the torque out, like the scene's with so many steps of its limit in a tick.
-    fn fade_out(&mut self, steps: u32);
+    /// Fades the torque out from this tick on, like the scene's with so many steps of its limit in a tick.
+    fn fade_out(&mut self, steps: u32, tick: u32);
     /// Whether the host wants no torque and gives none.
     fn is_at_rest(&self) -> bool;
     /// Whether this host may be replaced by another: no torque is under way.
@@ -173,12 +170,13 @@ pub trait BesideServo: Clone + fmt::Debug {
     fn cut(&mut self, by_fault: bool);
     /// The amplifier was off, and a hand may have got all of the energy before.
     fn drain(&mut self);
-    /// Moves the largest torque by a step, because of the heat of the torque output; returns whether it fell. As
+    /// Moves the largest torque of this tick by a step, because of the heat of the torque output; returns whether it fell. As
     /// long as it does, the scene keeps its torque.
-    fn step_by_heat(&mut self, _: HeatStep) -> bool {
+    fn step_by_heat(&mut self, _: HeatStep, _: u32) -> bool {
         false
     }
-    /// Takes the last command, if it is new, and reports the tick.
+    /// Takes the last command, if it is new, and reports the tick. It is to be called where a command waits, where
+    /// it is [due](Self::due), and in each tick that is not a usual one.
     fn exchange(&mut self, channel: &Self::Channel, tick: TickState);
 
     /// Sends a command: for the task.
@@ -254,11 +252,13 @@ impl BesideServo for NoHost {
     fn budget(_: HostTorque) {}
 
     #[inline(always)]
-    fn begin(&mut self) {}
+    fn begin(&mut self) -> i32 {
+        0
+    }
 
     #[inline(always)]
-    fn wanted(&self) -> i32 {
-        0
+    fn due(&self) -> Option<u32> {
+        None
     }
 
     #[inline(always)]
@@ -270,7 +270,7 @@ impl BesideServo for NoHost {
     fn wait(&mut self, _: bool) {}
 
     #[inline(always)]
-    fn fade_out(&mut self, _: u32) {}
+    fn fade_out(&mut self, _: u32, _: u32) {}
 
     #[inline(always)]
     fn is_at_rest(&self) -> bool {
@@ -361,6 +361,7 @@ impl HostTimes {
 pub struct Hosted<const TICKS: usize, const LAGS: usize> {
     tank: Tank<FixedDelay<i64, TICKS>, LAGS>,
     stream: Stream,
+    due: u32,
     /// Ticks per code in which the torque fades out at one step of the scene's limit in a tick.
     fade: f32,
     /// The number of the last command.
@@ -387,14 +388,41 @@ impl<const TICKS: usize, const LAGS: usize> Hosted<TICKS, LAGS> {
         self.tank.energy()
     }
 
-    /// Gives what the level pays of the wanted torque; returns the rest.
-    #[cold]
-    #[inline(never)]
-    fn refuse(&mut self) -> i32 {
-        let wanted = self.wanted();
-        let given = self.tank.allowed(wanted);
-        self.tank.give(given);
-        wanted - given
+    fn take_command(&mut self, channel: &HostWords, tick: TickState) {
+        let (sent, [torque, rest]) = channel.command();
+        if sent == self.taken {
+            return;
+        }
+        self.taken = sent;
+        let wanted = f32::from_bits(torque);
+        let torque = self.tank.in_range(wanted);
+        if !wanted.is_finite() {
+            self.invalid = self.invalid.saturating_add(1);
+        }
+        let is_hot = self.heat.iter().any(|heat| heat.now < heat.cold);
+        let is_open = tick.opening == Some(0) && !is_hot;
+        let wanted = if is_open { self.stream.wanted() } else { torque };
+        let given = self.tank.given();
+        let [refused, given] = [wanted - given, given].map(|codes| codes as f32 * self.tank.code());
+        channel.publish(
+            sent,
+            [
+                rest & 0xffff,
+                tick.tick,
+                tick.count.cast_unsigned(),
+                self.tank.rounded_energy().to_bits(),
+                given.to_bits(),
+                refused.to_bits(),
+                tick.state,
+                u32::from(self.invalid),
+            ],
+        );
+        if let Some(opening) = tick.opening {
+            let codes = |heat: &HeatLevel| heat.now >> STEP_BITS;
+            let limited = |torque: i32, most: i32| torque.clamp(-most, most);
+            let torque = self.heat.iter().map(codes).fold(torque, limited);
+            self.stream.take(torque, (rest >> 16) as u16, opening, tick.tick);
+        }
     }
 }
 
@@ -412,6 +440,7 @@ impl<const TICKS: usize, const LAGS: usize> BesideServo for Hosted<TICKS, LAGS> 
         Self {
             tank: Tank::empty(FixedDelay::full_of(0)),
             stream: Stream::new(&nothing, 1.0),
+            due: 0,
             fade: 0.0,
             taken: 0,
             invalid: 0,
@@ -440,26 +469,19 @@ impl<const TICKS: usize, const LAGS: usize> BesideServo for Hosted<TICKS, LAGS> 
     }
 
     #[inline(always)]
-    fn begin(&mut self) {
+    fn begin(&mut self) -> i32 {
         self.stream.advance();
-    }
-
-    #[inline(always)]
-    fn wanted(&self) -> i32 {
         self.stream.wanted()
     }
 
     #[inline(always)]
+    fn due(&self) -> Option<u32> {
+        Some(self.due)
+    }
+
+    #[inline(always)]
     fn refused(&mut self, moved: i32) -> i32 {
-        self.tank.book(moved);
-        let wanted = self.wanted();
-        let cost = self.tank.cost(wanted);
-        if !self.tank.pays(cost) {
-            cold_path();
-            return self.refuse();
-        }
-        self.tank.give_at(wanted, cost);
-        0
+        self.tank.refused(moved, self.stream.wanted())
     }
 
     fn wait(&mut self, may_give: bool) {
@@ -472,10 +494,10 @@ impl<const TICKS: usize, const LAGS: usize> BesideServo for Hosted<TICKS, LAGS> 
         }
     }
 
-    fn fade_out(&mut self, steps: u32) {
+    fn fade_out(&mut self, steps: u32, tick: u32) {
         let ticks = self.stream.wanted().abs() as f32 * self.fade / steps as f32;
         // The cast saturates.
-        self.stream.fade((ticks as u32).saturating_add(1));
+        self.stream.fade((ticks as u32).saturating_add(1), tick);
     }
 
     fn is_at_rest(&self) -> bool {
@@ -511,7 +533,7 @@ impl<const TICKS: usize, const LAGS: usize> BesideServo for Hosted<TICKS, LAGS> 
         self.tank.drain();
     }
 
-    fn step_by_heat(&mut self, step: HeatStep) -> bool {
+    fn step_by_heat(&mut self, step: HeatStep, tick: u32) -> bool {
         let Some(heat) = self.heat.first_mut() else { return false };
         // As many ticks from end to end as the scene's limit takes; down from the present torque, so that each acts.
         let most = heat.now.min(self.stream.largest());
@@ -522,45 +544,13 @@ impl<const TICKS: usize, const LAGS: usize> BesideServo for Hosted<TICKS, LAGS> 
             HeatStep::Lower => (most - change).max(0),
             HeatStep::Raise => (heat.now + change).min(heat.cold),
         };
-        self.stream.limit(heat.now);
+        self.stream.limit(heat.now, tick);
         heat.now < most
     }
 
     fn exchange(&mut self, channel: &HostWords, tick: TickState) {
-        let (sent, [torque, rest]) = channel.command();
-        if sent == self.taken {
-            return;
-        }
-        self.taken = sent;
-        let wanted = f32::from_bits(torque);
-        let torque = self.tank.in_range(wanted);
-        if !wanted.is_finite() {
-            self.invalid = self.invalid.saturating_add(1);
-        }
-        let is_hot = self.heat.iter().any(|heat| heat.now < heat.cold);
-        let is_open = tick.opening == Some(0) && !is_hot;
-        let wanted = if is_open { self.stream.wanted() } else { torque };
-        let given = self.tank.given();
-        let [refused, given] = [wanted - given, given].map(|codes| codes as f32 * self.tank.code());
-        channel.publish(
-            sent,
-            [
-                rest & 0xffff,
-                tick.tick,
-                tick.count.cast_unsigned(),
-                self.tank.rounded_energy().to_bits(),
-                given.to_bits(),
-                refused.to_bits(),
-                tick.state,
-                u32::from(self.invalid),
-            ],
-        );
-        if let Some(opening) = tick.opening {
-            let codes = |heat: &HeatLevel| heat.now >> STEP_BITS;
-            let limited = |torque: i32, most: i32| torque.clamp(-most, most);
-            let torque = self.heat.iter().map(codes).fold(torque, limited);
-            self.stream.take(torque, (rest >> 16) as u16, opening);
-        }
+        self.take_command(channel, tick);
+        self.due = self.stream.next(tick.tick, tick.deadline);
     }
 
     fn send(channel: &HostWords, number: u16, torque: f32, ramp: u16) {

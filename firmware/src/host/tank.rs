@@ -278,13 +278,43 @@ impl<D: DelayLine<i64>, const LAGS: usize> Tank<D, LAGS> {
     /// Ends a tick in which the position has moved by so many counts.
     #[inline(always)]
     pub fn book(&mut self, moved: i32) {
+        self.missing = self.booked(moved);
+    }
+
+    /// The same without its level, which is returned.
+    #[inline(always)]
+    fn booked(&mut self, moved: i32) -> i64 {
         let y = self.mean.wrapping_sub(moved.wrapping_mul(self.speed)).clamp(-LARGEST, LARGEST - 1);
         let lost = product(magnitude(y.wrapping_sub(self.before)), self.speed);
         let earned = product(y, y).wrapping_add(self.power);
         let missing = self.missing.wrapping_sub(earned).wrapping_add(lost);
         let to_come = self.to_come();
-        self.missing = clamped(missing.wrapping_sub(to_come)).wrapping_add(to_come);
         self.before = y;
+        clamped(missing.wrapping_sub(to_come)).wrapping_add(to_come)
+    }
+
+    /// [Books](Self::book) a tick, and [gives](Self::give) what the level pays of a wanted torque in codes, with a
+    /// single store of the level. Returns the rest.
+    #[inline(always)]
+    pub(super) fn refused(&mut self, moved: i32, wanted: i32) -> i32 {
+        let missing = self.booked(moved);
+        let cost = self.cost(wanted);
+        let paid = missing.wrapping_add(cost);
+        if !self.is_in_reach(paid) {
+            cold_path();
+            return self.refuse(paid, wanted);
+        }
+        self.give_at(wanted, cost, paid);
+        0
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn refuse(&mut self, paid: i64, wanted: i32) -> i32 {
+        self.missing = paid.wrapping_sub(self.cost(wanted));
+        let given = self.affordable(wanted);
+        self.give(given);
+        wanted - given
     }
 
     /// The energy of the commands given so far that is still to come.
@@ -302,13 +332,18 @@ impl<D: DelayLine<i64>, const LAGS: usize> Tank<D, LAGS> {
 
     /// Whether the level pays for a command that costs this much.
     #[inline(always)]
-    pub(super) fn pays(&self, cost: i64) -> bool {
-        ((self.missing.wrapping_add(cost) >> 32) as i32) < self.numbers.cap
+    fn pays(&self, cost: i64) -> bool {
+        self.is_in_reach(self.missing.wrapping_add(cost))
+    }
+
+    #[inline(always)]
+    const fn is_in_reach(&self, missing: i64) -> bool {
+        ((missing >> 32) as i32) < self.numbers.cap
     }
 
     /// What a command in codes costs until the end of its response.
     #[inline(always)]
-    pub(super) fn cost(&self, command: i32) -> i64 {
+    fn cost(&self, command: i32) -> i64 {
         let command = command << STEP_BITS;
         let lagging = self.lagging.first();
         lagging.map_or_else(|| product(command, command), |lagging| lagging.cost(command))
@@ -351,24 +386,28 @@ impl<D: DelayLine<i64>, const LAGS: usize> Tank<D, LAGS> {
     /// and the tick is [booked](Self::book).
     #[inline(always)]
     pub fn give(&mut self, command: i32) {
-        self.give_at(command, self.cost(command));
+        let cost = self.cost(command);
+        self.give_at(command, cost, self.missing.wrapping_add(cost));
     }
 
-    /// The same with its cost.
+    /// The same with its cost and the level after it.
     #[inline(always)]
-    pub(super) fn give_at(&mut self, command: i32, cost: i64) {
+    fn give_at(&mut self, command: i32, cost: i64, paid: i64) {
         let steps = command << STEP_BITS;
         let lagging = self.lagging.first_mut();
         let mean = lagging.map_or(steps, |lagging| lagging.give(steps, cost));
         let begins = self.means.due().map_or(mean, |mean| mean as i32);
-        let mut cost = cost;
+        let mut missing = paid;
         if LAGS == 0 {
             // The reserve covers this, so that the level may become negative.
             let change = begins.wrapping_sub(self.mean);
-            let price = (product(change, self.numbers.step_price) >> 32) as i32;
-            cost = cost.wrapping_add(product(change, price));
+            // Most torques are held.
+            if change != 0 {
+                let price = (product(change, self.numbers.step_price) >> 32) as i32;
+                missing = missing.wrapping_add(product(change, price));
+            }
         }
-        self.missing = self.missing.wrapping_add(cost);
+        self.missing = missing;
         self.mean = begins;
         self.means.push(mean.into());
     }
@@ -537,5 +576,5 @@ const fn magnitude(value: i32) -> i32 {
 /// A coefficient times a square, or a little more; zero for zero.
 const fn of_square(value: i32, coefficient: i32) -> i64 {
     let value = value.unsigned_abs() as i64;
-    value * ((value * coefficient as i64 >> Amplifier::BITS) + 1)
+    value * (((value * coefficient as i64) >> Amplifier::BITS) + 1)
 }

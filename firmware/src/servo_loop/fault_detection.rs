@@ -127,7 +127,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         match event {
             OutputEvent::Fault(fault) => self.fail(fault, hardware, inbox),
             OutputEvent::Heat(step) => {
-                let is_lower = self.rendering.host_mut().step_by_heat(step);
+                let is_lower = self.rendering.host_mut().step_by_heat(step, self.tick);
                 if self.state == State::Running && !is_lower {
                     self.rendering.servo_mut().step_by_heat(step);
                 }

@@ -165,17 +165,19 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             tick = self.check_tick_timing(passed, raw, hardware, inbox);
         }
         // Control: from the count to the code of this tick.
-        self.rendering.host_mut().begin();
         let before = self.rendering.servo().low_count();
         let output = self.rendering.tick(raw, &self.energy);
         let count = self.rendering.servo().low_count();
         let step = count.wrapping_sub(before);
         let (mut code, mut limit) = (output.code, output.limit);
+        if self.rendering.timing_limits().is_too_far(step) {
+            self.check_jump(passed, step, hardware, inbox);
+        }
         if E::Host::IS_PRESENT {
             // Beside the torque with which the coupling is solved: that of the scene follows from the positions
-            // alone. Before the faults, because fewer values are kept then: a step that is too far books what it
-            // should not, and empties the tank.
-            code = code.beside(self.rendering.host().wanted());
+            // alone. After the check of its step, which empties the tank where it stops the servo, and before the
+            // other faults, because fewer values are kept then.
+            code = code.beside(self.rendering.host_mut().begin());
             let refused = self.rendering.host_mut().refused(step);
             if refused != 0 {
                 code = code.beside(-refused);
@@ -183,9 +185,6 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
                     limit = LimitReason::Energy;
                 }
             }
-        }
-        if self.rendering.timing_limits().is_too_far(step) {
-            self.check_jump(passed, step, hardware, inbox);
         }
         if let Some(event) = hardware.output_event() {
             self.on_output_event(event, hardware, inbox);
@@ -206,10 +205,16 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         if M::TIMING.is_at_phase() {
             slack = self.slack(hardware, inbox);
         }
+        // Beside a host these are read again: its tank leaves no register to keep them in.
+        let mut count = count;
+        if E::Host::IS_PRESENT {
+            (tick, count) = (self.tick, self.rendering.servo().low_count());
+        }
         // Bookkeeping: energy, requests and states, watchdog, telemetry.
         self.energy.observe::<M>(step, code);
-        let link_due = tick.wrapping_sub(self.link_deadline).cast_signed() >= 0;
-        if pending != 0 || link_due {
+        // A host's due tick is at most the link's.
+        let due = self.rendering.host().due().unwrap_or(self.link_deadline);
+        if pending != 0 || tick.wrapping_sub(due).cast_signed() >= 0 {
             self.run_state_machine(hardware, inbox, frames.dropped());
         }
         hardware.feed_watchdog();

@@ -58,8 +58,9 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             }
             _ => None,
         };
-        let (tick, count) = (self.tick, self.rendering.servo().low_count());
-        let tick = TickState { tick, count, opening, state: self.state as u32 };
+        let (tick, deadline) = (self.tick, self.link_deadline);
+        let count = self.rendering.servo().low_count();
+        let tick = TickState { tick, count, opening, state: self.state as u32, deadline };
         let host = self.rendering.host_mut();
         host.wait(opening.is_some() || self.state == State::FadingOut);
         // What an alignment moves gives nothing back, nor do the pulses of a bridge that starts up.
@@ -146,7 +147,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         self.after_fade = after_fade;
         self.state = State::FadingOut;
         self.rendering.servo_mut().clamp_to_held_torque();
-        self.rendering.host_mut().fade_out(self.ramp);
+        self.rendering.host_mut().fade_out(self.ramp, self.tick);
     }
 
     fn fade_in(&mut self, inbox: &Incoming<'_, E, N, M>) {

@@ -191,9 +191,8 @@ where
 {
     let Prepared { scene, margin, rendering } = set;
     let budget = scene.environment.budget();
-    let times = (M::TIMING, N::FORMAT);
     let cogging = against_cogging::<E, N>(&scene);
-    let servo = ServoNumbers::of(&scene, cogging, margin, transducers, options, times);
+    let servo = ServoNumbers::of(&scene, cogging, margin, transducers, options, M::TIMING);
     let host = E::Host::beside(&budget, &servo.map_err(|_| Step::Servo)?);
     let rendering = rendering.with_host(host.map_err(|_| Step::Servo)?);
     let share = E::Host::host(&budget).map_or(0.0, |host| host.damping);
@@ -236,9 +235,8 @@ where
     PreparedServo::<E, N, M>::build(&timed, transducers, options)?;
     if let Some(host) = E::Host::host(&changed.environment.budget()) {
         let margin = timed.margin_with(options.injection.unwrap_or(0.0));
-        let times = (M::TIMING, N::FORMAT);
         let cogging = against_cogging::<E, N>(&changed);
-        let servo = ServoNumbers::of(&changed, cogging, margin, transducers, options, times)?;
+        let servo = ServoNumbers::of(&changed, cogging, margin, transducers, options, M::TIMING)?;
         HostResponse::beside(
             &host,
             &servo,

@@ -94,8 +94,7 @@ impl Description {
         let (scene, injected) = (certified.as_data(), rendering.injection.unwrap_or(0.0));
         let margin = certified.assessment().margin_injecting(scene, injected);
         let cogging = scene.environment.parts().against_cogging();
-        let times = (*timing, *format);
-        let servo = ServoNumbers::of(scene, cogging, margin, transducers, rendering, times)?;
+        let servo = ServoNumbers::of(scene, cogging, margin, transducers, rendering, *timing)?;
         let is_plain = HostTimes::of(&scene.latency, scene.timing.period).is_plain;
         let ticks = usize::from(*timing == OutputTiming::Latched);
         HostResponse::beside(host, &servo, HostTimes { ticks, is_plain })?;

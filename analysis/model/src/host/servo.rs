@@ -81,7 +81,6 @@ impl<'a> HostedServo<'a> {
             fade: RenderingOptions::DEFAULT.fade,
             output,
             radians_per_count: TAU / transducers.counts_per_turn,
-            format,
             stores,
         };
         Self::beside(servo, host, &numbers)
@@ -158,8 +157,7 @@ impl Controller for HostedServo<'_> {
         let mut tick = self.servo.tick(raw);
         let count = tick.count as i32;
         let moved = count.wrapping_sub(std::mem::replace(&mut self.count, count));
-        self.host.begin();
-        let (wanted, refused) = (self.host.wanted(), self.host.refused(moved));
+        let (wanted, refused) = (self.host.begin(), self.host.refused(moved));
         let given = wanted - refused;
         let acting = self.held.as_mut().map_or(given, |held| std::mem::replace(held, given));
         tick.code = DacCode::new(tick.code).map_or(tick.code, |code| code.beside(acting).get());
@@ -168,8 +166,8 @@ impl Controller for HostedServo<'_> {
         }
         let [wanted, given] = [wanted, given].map(|codes| f64::from(codes) * self.code);
         self.tick = HostTick { wanted, given, level: self.host.energy() };
-        let state = State::Running as u32;
-        let taken = TickState { tick: self.number, count, opening: Some(0), state };
+        let (state, deadline) = (State::Running as u32, self.number.wrapping_add(1));
+        let taken = TickState { tick: self.number, count, opening: Some(0), state, deadline };
         self.host.exchange(&self.channel, taken);
         if let Some(torque) = self.sender.as_mut().and_then(|sender| sender.after(count)) {
             self.send(torque, 0);

@@ -3,7 +3,6 @@
 use std::f64::consts::TAU;
 
 use haptic_servo::host::ServoNumbers;
-use haptic_servo::number::Format;
 use haptic_servo::scene::{Latency, Scene};
 use haptic_servo::servo::OutputTiming;
 
@@ -40,7 +39,6 @@ fn most_taken(file: &SceneFile, law: HostLaw, output: OutputTiming, has_tank: bo
         fade: 0.1,
         output,
         radians_per_count: TAU / transducers.counts_per_turn,
-        format: Format::F32,
         stores: false,
     };
     let hosted = HostedServo::beside(servo, &budget, &numbers).unwrap();
