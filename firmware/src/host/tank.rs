@@ -560,11 +560,10 @@ const fn product(a: i32, b: i32) -> i64 {
     a as i64 * b as i64
 }
 
-/// The number if it is not negative, otherwise a part of 2^32: a single instruction.
+/// The number, or zero if it is negative: a full tank has the same level after any number of ticks.
 #[inline(always)]
 const fn clamped(value: i64) -> i64 {
-    let high = (value >> 32) as i32;
-    ((high & !(high >> 31)) as i64) << 32 | (value as u32) as i64
+    value & !(value >> 63)
 }
 
 /// The number without its sign.

@@ -384,7 +384,7 @@ fn without_the_lag_in_the_model_the_budget_is_exceeded() {
     }
 }
 
-/// The level is that of exact arithmetic with the same torques and steps, less the debits of counts and what is
+/// The level is that of exact arithmetic with the same torques and steps, less the debits of counts and the part that is
 /// above the cap.
 #[test]
 fn the_level_is_exact() {
