@@ -20,7 +20,7 @@ impl Assessment {
     ///
     /// For a rejected linear scene, the damping that the device lacks, as a negative number. `None` for an
     /// undecided scene and for a rejected one-sided or limited scene, which have no such number, and where it
-    /// is not known: see [`Limited::margin`].
+    /// is not known.
     ///
     /// `scene` is the assessed scene.
     pub const fn margin(&self, scene: &Scene) -> Option<f64> {
