@@ -170,8 +170,8 @@ pub trait BesideServo: Clone + fmt::Debug {
     fn cut(&mut self, by_fault: bool);
     /// The amplifier was off, and a hand may have got all of the energy before.
     fn drain(&mut self);
-    /// Moves the largest torque of this tick by a step, because of the heat of the torque output; returns whether it fell. As
-    /// long as it does, the scene keeps its torque.
+    /// Moves the largest torque of this tick by a step, because of the heat of the torque output; returns whether it
+    /// fell. As long as it does, the scene keeps its torque.
     fn step_by_heat(&mut self, _: HeatStep, _: u32) -> bool {
         false
     }
@@ -355,8 +355,8 @@ impl HostTimes {
     }
 }
 
-/// A host with its tank. A command acts `TICKS` whole ticks after its count, and in
-/// one tick only unless there are `LAGS`.
+/// A host with its tank. A command acts `TICKS` whole ticks after its count, and in one tick only unless there are
+/// `LAGS`.
 #[derive(Clone, Debug)]
 pub struct Hosted<const TICKS: usize, const LAGS: usize> {
     tank: Tank<FixedDelay<i64, TICKS>, LAGS>,

@@ -5,32 +5,19 @@ use std::fmt;
 use std::str::FromStr;
 
 use haptic_servo::servo::Transducers;
+use haptic_servo::words;
 
-/// What a hostile host sends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum HostLaw {
+words! {
+    /// What a hostile host sends; its name on the command line and on the page.
+    HostLaw {
     /// Pushes along the velocity.
-    Pump,
+    Pump "pump",
     /// Random torques.
-    Noise,
+    Noise "noise",
     /// A stiff spring towards zero, at the position of the reading before.
-    LateSpring,
+    LateSpring "late-spring",
     /// A square wave.
-    Square,
-}
-
-impl HostLaw {
-    /// All values.
-    pub const ALL: [Self; 4] = [Self::Pump, Self::Noise, Self::LateSpring, Self::Square];
-
-    /// Its name on the command line and on the page.
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::Pump => "pump",
-            Self::Noise => "noise",
-            Self::LateSpring => "late-spring",
-            Self::Square => "square",
-        }
+    Square "square",
     }
 }
 

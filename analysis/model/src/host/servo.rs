@@ -53,8 +53,7 @@ pub struct HostedServo<'a> {
 
 impl<'a> HostedServo<'a> {
     /// A full tank beside the servo of a scene in this format, with torques that are put out at the next count or
-    /// at their own, and whether the supply of a board's own bridge takes no energy
-    /// back.
+    /// at their own, and whether the supply of a board's own bridge takes no energy back.
     ///
     /// # Errors
     /// If there is no proof for the host beside this servo, or its torque and the scene's are together above full
@@ -124,11 +123,7 @@ impl<'a> HostedServo<'a> {
 
     /// Ticks without a motion and a command, as before a run.
     pub fn rest(&mut self, ticks: u32) {
-        for _ in 0..ticks {
-            self.host.begin();
-            self.host.refused(0);
-        }
-        self.number = ticks;
+        self.follow(&vec![(self.count, false); ticks as usize]);
     }
 
     /// Ticks without a command, as before a run, by their counts, and whether an alignment moved the handle in each.
