@@ -10,7 +10,7 @@ use crate::controller::{Controller, Tick};
 use crate::device::Energy;
 use crate::emulator::{Emulator, EmulatorError, EmulatorReport, InstructionStats};
 use crate::hand::HandTrajectory;
-use crate::lockstep::{NoRemote, PlantIo, Recording, RemoteServo, Run, SimulatedDevice, run};
+use crate::lockstep::{PlantIo, Recording, Run, SimulatedDevice, run_beside};
 use crate::simulation::tick_status::TickStatus;
 use crate::toolchain;
 use crate::trace::{TimeUnit, Trace};
@@ -144,34 +144,31 @@ fn run_lockstep(
 ) -> Result<RunOutcome, RunError> {
     let (run, board) = match board {
         None => {
-            let Ok(run) = run::<NoRemote>(plant, controller, None, ticks, progress);
+            let own = |_, tick: &Tick| Ok::<_, RunError>(tick.code);
+            let run = run_beside(plant, controller, own, ticks, progress)?;
             (run, None)
         }
         // On either board the hand waits until the servo runs.
         Some(Backend::Emulator(elf)) => {
             let mut board = Emulator::boot(elf)?;
             board.arm_and_wait()?;
-            let run = run(plant, controller, Some(&mut board), ticks, progress)?;
+            let mut ticks_before = 0..;
+            let remote = |count, _: &Tick| {
+                let tick = ticks_before.next().unwrap_or_default();
+                board.exchange(count).map_err(|source| RunError::EmulatedBoard { tick, source })
+            };
+            let run = run_beside(plant, controller, remote, ticks, progress)?;
             (run, Some(BoardMeasurement::Emulated(Box::new(board.finish()?))))
         }
         Some(Backend::VirtualBoard { program, board, elf, period }) => {
             let mut board = VirtualBoard::boot(program, board, elf, None)?;
             board.arm_and_wait(period)?;
-            let run = run(plant, controller, Some(&mut board), ticks, progress)?;
+            let remote = |count, _: &Tick| board.exchange(count, &[]).map(|(code, _)| code);
+            let run = run_beside(plant, controller, remote, ticks, progress)?;
             (run, Some(BoardMeasurement::Virtual(board.finish()?)))
         }
     };
     Ok(RunOutcome { run, energy: None, final_speed: None, board, host: None })
-}
-
-impl RemoteServo for Emulator {
-    type Error = RunError;
-
-    fn exchange(&mut self, raw: i32) -> Result<u16, RunError> {
-        let tick = self.exchanges;
-        self.exchanges += 1;
-        Self::exchange(self, raw).map_err(|source| RunError::EmulatedBoard { tick, source })
-    }
 }
 
 /// The status of a tick.

@@ -13,7 +13,7 @@ use thiserror::Error;
 use crate::controller::{Tick, controller};
 use crate::device::Hand;
 use crate::hand::HandTrajectory;
-use crate::lockstep::{NoRemote, SimulatedDevice, run};
+use crate::lockstep::{SimulatedDevice, run};
 use crate::profile_curve::ProfileCurve;
 use crate::simulation::SimulationError;
 
@@ -70,7 +70,7 @@ impl FeltTurn {
         let around = 0.5 * way / REPETITIONS;
         let curve = ProfileCurve::over(scene, &(-around..way + around));
         let curve = curve.ok_or(FeltTurnError::NoProfile)?;
-        let Ok(run) = run::<NoRemote>(&mut device, servo.as_mut(), None, ticks, || {});
+        let run = run(&mut device, servo.as_mut(), ticks);
         let time: Vec<f64> = (0..ticks).map(|tick| tick as f64 * scene.timing.period).collect();
         let angle = |tick: &Tick| tick.count as f64 * TAU / transducers.counts_per_turn;
         // The motor applies the code, and a torque that pushes back is minus that.

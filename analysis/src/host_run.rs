@@ -125,21 +125,23 @@ impl BesideHost {
         match board {
             Backend::Emulator(elf) => {
                 let mut emulator = Emulator::boot(elf)?;
-                let port = emulator.arm_and_wait()?;
+                let mut port = emulator.arm_and_wait()?;
                 port.set_nonblocking(true).map_err(EmulatorError::Serial)?;
-                let output = OutputTiming::Simultaneous;
-                let board = EmulatorWithPort { emulator, port };
-                let mut held = Held { board, device, count: 0 };
+                let exchange = |count, bytes: &[u8]| {
+                    Ok(exchange_with_port(&mut emulator, &mut port, count, bytes)?)
+                };
+                let mut held = Held { exchange, device, count: 0 };
                 let recorded = self.record(&mut held, ticks, progress)?;
-                let report = BoardMeasurement::Emulated(Box::new(held.board.emulator.finish()?));
-                self.replayed(recorded, controller, output, report)
+                let report = BoardMeasurement::Emulated(Box::new(emulator.finish()?));
+                self.replayed(recorded, controller, OutputTiming::Simultaneous, report)
             }
             Backend::VirtualBoard { program, board, elf, period } => {
                 let mut board = VirtualBoard::boot(program, board, elf, None)?;
                 board.arm_and_wait(period)?;
-                let mut held = Held { board, device, count: 0 };
+                let exchange = |count, bytes: &[u8]| Ok(board.exchange(count, bytes)?);
+                let mut held = Held { exchange, device, count: 0 };
                 let recorded = self.record(&mut held, ticks, progress)?;
-                let report = BoardMeasurement::Virtual(held.board.finish()?);
+                let report = BoardMeasurement::Virtual(board.finish()?);
                 self.replayed(recorded, controller, self.output(), report)
             }
         }
@@ -329,17 +331,21 @@ trait BoardInHand {
 }
 
 /// A board in lockstep with a device, which gets the torques of its codes.
-struct Held<B> {
-    board: B,
+struct Held<E> {
+    /// The board's code for a count, with bytes to its port and from it.
+    exchange: E,
     device: SimulatedDevice,
     count: i32,
 }
 
-impl<B: BoardWithHost> BoardInHand for Held<B> {
+impl<E> BoardInHand for Held<E>
+where
+    E: FnMut(i32, &[u8]) -> Result<(u16, Vec<u8>), RunError>,
+{
     fn tick(&mut self, bytes: &[u8]) -> Result<Option<(Exchanged, Vec<u8>)>, RunError> {
         let Some(count) = self.device.count() else { return Ok(None) };
         self.count = count;
-        let (code, heard) = self.board.exchange(count, bytes)?;
+        let (code, heard) = (self.exchange)(count, bytes)?;
         let before = self.device.motion().position;
         self.device.hold(code);
         let moved = self.device.motion().position - before;
@@ -347,7 +353,7 @@ impl<B: BoardWithHost> BoardInHand for Held<B> {
     }
 
     fn stand(&mut self, bytes: &[u8]) -> Result<Vec<u8>, RunError> {
-        Ok(self.board.exchange(self.count, bytes)?.1)
+        Ok((self.exchange)(self.count, bytes)?.1)
     }
 
     fn end(&self) -> (Energy, f64) {
@@ -379,36 +385,20 @@ impl BoardInHand for HeldShaft {
     }
 }
 
-/// A board in lockstep, with its serial port.
-trait BoardWithHost {
-    /// The board's code for a count, with bytes to its port and from it.
-    fn exchange(&mut self, count: i32, bytes: &[u8]) -> Result<(u16, Vec<u8>), RunError>;
-}
-
-impl BoardWithHost for VirtualBoard {
-    fn exchange(&mut self, count: i32, bytes: &[u8]) -> Result<(u16, Vec<u8>), RunError> {
-        self.answer(count, bytes)?;
-        let sample = self.sample()?;
-        Ok((sample.applied_code(), sample.sent))
+/// The code of the emulated board for a count, with bytes to the socket that is its port, and from it.
+fn exchange_with_port(
+    emulator: &mut Emulator,
+    port: &mut UnixStream,
+    count: i32,
+    bytes: &[u8],
+) -> Result<(u16, Vec<u8>), EmulatorError> {
+    port.write_all(bytes).map_err(EmulatorError::Serial)?;
+    let code = emulator.exchange(count)?;
+    let mut heard = vec![0; 1024];
+    match port.read(&mut heard) {
+        Ok(length) => heard.truncate(length),
+        Err(error) if error.kind() == ErrorKind::WouldBlock => heard.clear(),
+        Err(error) => return Err(EmulatorError::Serial(error)),
     }
-}
-
-/// An emulated board, and the socket that is its port.
-struct EmulatorWithPort {
-    emulator: Emulator,
-    port: UnixStream,
-}
-
-impl BoardWithHost for EmulatorWithPort {
-    fn exchange(&mut self, count: i32, bytes: &[u8]) -> Result<(u16, Vec<u8>), RunError> {
-        self.port.write_all(bytes).map_err(EmulatorError::Serial)?;
-        let code = self.emulator.exchange(count)?;
-        let mut heard = vec![0; 1024];
-        match self.port.read(&mut heard) {
-            Ok(length) => heard.truncate(length),
-            Err(error) if error.kind() == ErrorKind::WouldBlock => heard.clear(),
-            Err(error) => return Err(EmulatorError::Serial(error).into()),
-        }
-        Ok((code, heard))
-    }
+    Ok((code, heard))
 }

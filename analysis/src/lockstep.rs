@@ -1,6 +1,7 @@
 //! The tick-by-tick loop of a servo and its surroundings: a recording, or a simulated device with encoder,
 //! motor and hand. A remote servo may run in lockstep, and its codes are compared.
 
+use std::convert::Infallible;
 use std::fmt;
 
 pub use haptic_client::simulated::{PlantIo, SimulatedDevice};
@@ -28,14 +29,6 @@ impl PlantIo for Recording<'_> {
     }
 
     fn hold(&mut self, _: u16) {}
-}
-
-/// The same servo on a board: it gets the same counts.
-pub trait RemoteServo {
-    /// Why it could not answer.
-    type Error;
-    /// The board's code for a count.
-    fn exchange(&mut self, raw: i32) -> Result<u16, Self::Error>;
 }
 
 /// The first tick whose codes were not equal.
@@ -100,27 +93,33 @@ impl Run {
     }
 }
 
-/// Runs at most `ticks` ticks. With a remote servo, its codes move the device, and the servo here is
-/// compared with it. `progress` is called after each tick.
-pub fn run<T: RemoteServo>(
+/// Runs at most `ticks` ticks of a servo on this machine alone.
+pub fn run(plant: &mut dyn PlantIo, controller: &mut dyn Controller, ticks: usize) -> Run {
+    let own = |_, tick: &Tick| Ok::<_, Infallible>(tick.code);
+    let Ok(run) = run_beside(plant, controller, own, ticks, || {});
+    run
+}
+
+/// Runs at most `ticks` ticks. The codes of `remote`, for a count and the tick of the servo here, move the
+/// device, and the servo here is compared with them. `progress` is called after each tick.
+pub fn run_beside<E>(
     plant: &mut dyn PlantIo,
     controller: &mut dyn Controller,
-    mut remote: Option<&mut T>,
+    mut remote: impl FnMut(i32, &Tick) -> Result<u16, E>,
     ticks: usize,
     mut progress: impl FnMut(),
-) -> Result<Run, T::Error> {
+) -> Result<Run, E> {
     let mut run = Run::from_rest(controller);
     while run.ticks.len() < ticks
         && let Some(count) = plant.count()
     {
         // Held: the first reading does not fail.
         let held = run.ticks.last().filter(|_| plant.is_left_out());
-        let (tick, code) = match (held, remote.as_mut()) {
-            (Some(held), _) => (Tick { is_left_out: true, ..*held }, held.code),
-            (None, Some(remote)) => (controller.tick(count), remote.exchange(count)?),
-            (None, None) => {
+        let (tick, code) = match held {
+            Some(held) => (Tick { is_left_out: true, ..*held }, held.code),
+            None => {
                 let tick = controller.tick(count);
-                (tick, tick.code)
+                (tick, remote(count, &tick)?)
             }
         };
         plant.hold(code);
@@ -128,15 +127,4 @@ pub fn run<T: RemoteServo>(
         progress();
     }
     Ok(run)
-}
-
-/// No remote servo: for runs on the host alone.
-pub enum NoRemote {}
-
-impl RemoteServo for NoRemote {
-    type Error = std::convert::Infallible;
-
-    fn exchange(&mut self, _: i32) -> Result<u16, Self::Error> {
-        match *self {}
-    }
 }

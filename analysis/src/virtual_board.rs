@@ -15,7 +15,6 @@ use haptic_servo::servo::RenderingOptions;
 use haptic_servo::wire::message::ToBoard;
 
 use crate::emulator::InstructionStats;
-use crate::lockstep::RemoteServo;
 use crate::shaft::{Shaft, ShaftMotion};
 use crate::simulation::SimulationError;
 use crate::toolchain::BoardModel;
@@ -157,6 +156,18 @@ impl VirtualBoard {
         let turned = count.wrapping_sub(self.count);
         self.count = count;
         self.write_answer(turned, bytes).map_err(|error| self.stopped(&error))
+    }
+
+    /// The board waits for a count and holds the code that it computed before: the code of that sample is the
+    /// answer. With bytes to the serial port and from it.
+    pub fn exchange(
+        &mut self,
+        count: i32,
+        bytes: &[u8],
+    ) -> Result<(u16, Vec<u8>), VirtualBoardError> {
+        self.answer(count, bytes)?;
+        let sample = self.sample()?;
+        Ok((sample.applied_code(), sample.sent))
     }
 
     /// Arms the servo over the serial port, and runs until the clamp of a servo with this period in s has
@@ -303,17 +314,6 @@ impl Drop for VirtualBoard {
         self.input = None;
         let _ = self.process.kill();
         let _ = self.process.wait();
-    }
-}
-
-/// The board waits for a count and holds the code that it computed before; the code of that sample is the
-/// answer.
-impl RemoteServo for VirtualBoard {
-    type Error = VirtualBoardError;
-
-    fn exchange(&mut self, raw: i32) -> Result<u16, VirtualBoardError> {
-        self.answer(raw, &[])?;
-        Ok(self.sample()?.applied_code())
     }
 }
 

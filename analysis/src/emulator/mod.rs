@@ -58,8 +58,6 @@ pub struct Emulator {
     guest: Guest,
     /// Number of the last tick.
     number: u16,
-    /// Ticks of a run so far.
-    pub(crate) exchanges: usize,
 }
 
 /// Errors of an emulated board.
@@ -100,7 +98,7 @@ impl Emulator {
     /// Starts a scene's program. A program that refuses to run is detected at the first
     /// [`exchange`](Self::exchange).
     pub fn boot(elf: &Path) -> Result<Self, EmulatorError> {
-        Ok(Self { guest: Guest::boot(elf)?, number: 0, exchanges: 0 })
+        Ok(Self { guest: Guest::boot(elf)?, number: 0 })
     }
 
     /// The same with another timeout.

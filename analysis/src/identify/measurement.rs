@@ -9,7 +9,7 @@ use super::record::Record;
 use super::rig::{MeasuredDevice, torque_of};
 use crate::compare_run::RunError;
 use crate::emulator::Emulator;
-use crate::lockstep::{Difference, RemoteServo};
+use crate::lockstep::Difference;
 use crate::quantity::significant;
 
 /// A record, and whether the board's codes equal those of this process.
@@ -39,7 +39,9 @@ pub fn measure<const N: usize>(
         let (count, excitation) = (device.count(), exciter.next());
         let host = excitation.code.get();
         let code = match &mut board {
-            Some(board) => RemoteServo::exchange(board, count)?,
+            Some(board) => {
+                board.exchange(count).map_err(|source| RunError::EmulatedBoard { tick, source })?
+            }
             None => host,
         };
         if code == host {

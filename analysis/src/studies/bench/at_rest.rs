@@ -11,7 +11,7 @@ use haptic_servo::certificate::{QuantizationBound, Resolution};
 use haptic_servo::dac::DacCode;
 use haptic_servo::number::Format;
 
-use crate::lockstep::{NoRemote, run};
+use crate::lockstep::run;
 use crate::program::Program;
 use crate::simulation::Experiment;
 use crate::simulation::torque_signal::TorqueSignal;
@@ -99,7 +99,7 @@ pub fn run_on_host(program: &Program, friction: f64) -> Vec<(i32, u16)> {
     let mut servo = program
         .controller(NumberFormat::F32, &program.transducers)
         .expect("a program's scene has a servo");
-    let Ok(run) = run::<NoRemote>(&mut device, servo.as_mut(), None, TICKS, || {});
+    let run = run(&mut device, servo.as_mut(), TICKS);
     run.ticks.iter().map(|tick| (tick.count as i32, tick.code)).collect()
 }
 

@@ -8,7 +8,7 @@ use super::loaded::LoadedDevice;
 use super::method_result::{MOVES, MethodResult};
 use super::motion::{Motion, Outcome};
 use crate::controller::controller;
-use crate::lockstep::{NoRemote, run};
+use crate::lockstep::run;
 use crate::simulation::{Experiment, Integration, simulate};
 use crate::studies::error::StudyError;
 
@@ -46,7 +46,7 @@ impl LoopRun {
         let Ok(certified) = claimed.certify() else { return Ok(None) };
         let mut servo = controller::<Environment, f32>(&certified, &self.transducers)?;
         let mut device = LoadedDevice::new(&self.experiment, &self.transducers)?;
-        let Ok(_) = run::<NoRemote>(&mut device, servo.as_mut(), None, *samples, || {});
+        run(&mut device, servo.as_mut(), *samples);
         Ok(Some(Motion::of(&device.positions, *samples)))
     }
 }

@@ -6,7 +6,7 @@ use haptic_servo::number::Arithmetic;
 use super::FormatProblem;
 use crate::controller::controller;
 use crate::hand::HandTrajectory;
-use crate::lockstep::{NoRemote, SimulatedDevice, run};
+use crate::lockstep::{SimulatedDevice, run};
 use crate::studies::error::StudyError;
 
 /// Counts of a device in a hand, with the servo in `f64`.
@@ -34,7 +34,7 @@ impl Motion {
         let certified = scene.certify().map_err(StudyError::from)?;
         let mut servo = controller::<_, f64>(&certified, &transducers)?;
         let ticks = (seconds / period).ceil() as usize;
-        let Ok(run) = run::<NoRemote>(&mut device, servo.as_mut(), None, ticks, || {});
+        let run = run(&mut device, servo.as_mut(), ticks);
         let counts = run.ticks.iter().map(|tick| tick.count as i32).collect();
         Ok(Self::recorded(problem, counts))
     }
