@@ -19,7 +19,7 @@ const DEPTH: f64 = 100.0;
 
 /// An active resonance: its real part is negative within a millionth of a radian, and nowhere else
 /// by more than the device's passivity.
-pub fn grid() -> Result<CaseResult, StudyError> {
+pub fn grid() -> Result<CaseReport, StudyError> {
     let scene = coupled(PADDLE, resonance(DEPTH, angle()));
     let delta = PADDLE.damping;
     let velocity = equivalent(&scene)?.from_velocity(PERIOD);
@@ -36,7 +36,7 @@ pub fn grid() -> Result<CaseResult, StudyError> {
     let mut grows = loop_run("in a hand that resonates there", &scene, PADDLES, Outcome::Diverges);
     grows.experiment.plant =
         grows.experiment.plant.with_hand(Hand { stiffness, ..Hand::default() });
-    Ok(CaseResult::of(&scene, methods.into(), truth, [grows.pushed(1.0, 300_000)]))
+    CaseReport::of(&scene, methods.into(), truth, &[grows.pushed(1.0, 300_000)])
 }
 
 /// In the middle between two points of the finest grid, a third of the way around.

@@ -6,7 +6,7 @@ use crate::simulation::{Experiment, Integration};
 use crate::stability::critical_stiffness;
 
 /// Semi-implicit Euler with few steps: an oscillating wall comes to rest.
-pub fn semi_implicit_euler() -> Result<CaseResult, StudyError> {
+pub fn semi_implicit_euler() -> Result<CaseReport, StudyError> {
     let scene = rigid(KNOB, wall_of(1500.0, 0.0, 0));
     let by = |method, substeps| by_limit(&Experiment::still(&scene), method, substeps, 1500.0);
     let methods = [1, 2, 10].map(|substeps| by(Method::SemiImplicit, substeps));
@@ -16,7 +16,7 @@ pub fn semi_implicit_euler() -> Result<CaseResult, StudyError> {
         .with_claimed_passivity(2.0);
     let rests = rigid(KNOB, wall_of(900.0, 0.0, 0));
     let rests = loop_run("900 N m/rad", &rests, KNOBS, Outcome::Converges).pushed(1.0, 3000);
-    Ok(CaseResult::of(&scene, methods, by(Method::Exact, 1)?, [shakes, rests]))
+    CaseReport::of(&scene, methods, by(Method::Exact, 1)?, &[shakes, rests])
 }
 
 /// The name of a method with a number of steps.

@@ -27,7 +27,7 @@ const TOOTH: [(f64, f64); 5] = tooth(MEAN);
 const LEVEL_TOOTH: [(f64, f64); 5] = tooth(0.0);
 
 /// In a hand that holds it, the knob rests; let go, it turns for ever.
-pub fn ratchet() -> Result<CaseResult, StudyError> {
+pub fn ratchet() -> Result<CaseReport, StudyError> {
     let turns = turning("let go", &TOOTH, Outcome::Diverges)?;
     let rests = turning("the same less its mean", &LEVEL_TOOTH, Outcome::Converges)?;
     let hand = Hand { stiffness: STIFFNESS, damping: DAMPING, ..Hand::default() };
@@ -48,7 +48,7 @@ pub fn ratchet() -> Result<CaseResult, StudyError> {
         Err(refused) => return Err(refused.into()),
         Ok(profile) => MethodResult::certificate(&rigid(KNOB, profile)),
     };
-    Ok(CaseResult { methods, certificate, truth, runs: vec![turns, rests] })
+    CaseReport::with(methods, certificate, truth, &[turns, rests])
 }
 
 /// Teeth of a knob between distant end stops.

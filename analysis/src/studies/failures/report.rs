@@ -15,29 +15,7 @@ pub struct Case {
     pub name: &'static str,
     /// The question as short text.
     pub question: &'static str,
-    pub(super) evaluate: fn() -> Result<CaseResult, StudyError>,
-}
-
-/// The results of all methods, and the loops that show which of them are right.
-pub struct CaseResult {
-    pub(super) methods: Vec<MethodResult>,
-    pub(super) certificate: MethodResult,
-    /// The true result for this loop.
-    pub(super) truth: MethodResult,
-    /// The runs: of the loop in question, then of a loop that the certificate allows.
-    pub(super) runs: Vec<LoopRun>,
-}
-
-impl CaseResult {
-    /// The results of common methods on a scene, and the certificate's.
-    pub(super) fn of(
-        scene: &Scene,
-        methods: Vec<MethodResult>,
-        truth: MethodResult,
-        runs: impl Into<Vec<LoopRun>>,
-    ) -> Self {
-        Self { methods, certificate: MethodResult::certificate(scene), truth, runs: runs.into() }
-    }
+    pub(super) evaluate: fn() -> Result<CaseReport, StudyError>,
 }
 
 /// A case with all its results.
@@ -85,17 +63,7 @@ pub struct RunResult {
 impl Case {
     /// Evaluates all methods, and runs the loops.
     pub fn report(&self) -> Result<CaseReport, StudyError> {
-        let result = (self.evaluate)()?;
-        let truth = result.truth.verdict;
-        let judged = |result: MethodResult| JudgedMethod { failure: result.failure(truth), result };
-        Ok(CaseReport {
-            name: self.name,
-            question: self.question,
-            methods: result.methods.into_iter().map(judged).collect(),
-            truth: result.truth,
-            certificate: result.certificate,
-            runs: result.runs.iter().map(RunResult::of).collect::<Result<_, _>>()?,
-        })
+        Ok(CaseReport { name: self.name, question: self.question, ..(self.evaluate)()? })
     }
 }
 
@@ -114,6 +82,32 @@ impl RunResult {
 }
 
 impl CaseReport {
+    /// The results of common methods on a scene, and the certificate's. The runs: of the loop in question, then
+    /// of a loop that the certificate allows.
+    pub(super) fn of(
+        scene: &Scene,
+        methods: Vec<MethodResult>,
+        truth: MethodResult,
+        runs: &[LoopRun],
+    ) -> Result<Self, StudyError> {
+        Self::with(methods, MethodResult::certificate(scene), truth, runs)
+    }
+
+    /// The same with another answer of the certificate; the case adds its name and its question.
+    pub(super) fn with(
+        methods: Vec<MethodResult>,
+        certificate: MethodResult,
+        truth: MethodResult,
+        runs: &[LoopRun],
+    ) -> Result<Self, StudyError> {
+        let (name, question, verdict) = ("", "", truth.verdict);
+        let judged =
+            |result: MethodResult| JudgedMethod { failure: result.failure(verdict), result };
+        let methods = methods.into_iter().map(judged).collect();
+        let runs = runs.iter().map(RunResult::of).collect::<Result<_, _>>()?;
+        Ok(Self { name, question, methods, truth, certificate, runs })
+    }
+
     /// Whether some method is wrong, the certificate is right, and all runs are as expected.
     pub fn holds(&self) -> bool {
         self.methods.iter().any(|judged| judged.failure.is_some())

@@ -12,7 +12,7 @@ use crate::simulation::SimulationError;
 use crate::simulation::closed_loop::transfers;
 
 /// Continuous time: a mass, a damper and any spring come to rest.
-pub fn continuous_time() -> Result<CaseResult, StudyError> {
+pub fn continuous_time() -> Result<CaseReport, StudyError> {
     const STIFFNESS: f64 = 5000.0;
     let scene = rigid(KNOB, wall_of(STIFFNESS, 0.0, 0));
     // m s^2 + b s + K = 0
@@ -34,11 +34,11 @@ pub fn continuous_time() -> Result<CaseResult, StudyError> {
         .with_claimed_passivity(10.0);
     let rests = rigid(KNOB, wall_of(900.0, 0.0, 0));
     let rests = loop_run("900 N m/rad", &rests, KNOBS, Outcome::Converges).pushed(1.0, 3000);
-    Ok(CaseResult::of(&scene, methods, MethodResult::in_no_hand(&scene)?, [shakes, rests]))
+    CaseReport::of(&scene, methods, MethodResult::in_no_hand(&scene)?, &[shakes, rests])
 }
 
 /// Colgate's and Schenkel's inequality alone: a negative spring passes.
-pub fn negative_spring() -> Result<CaseResult, StudyError> {
+pub fn negative_spring() -> Result<CaseReport, StudyError> {
     const STIFFNESS: f64 = -200.0;
     let spring = |stiffness: f64| Environment::Rational(rational(&[stiffness], &[1.0]));
     let scene = rigid(KNOB, spring(STIFFNESS));
@@ -58,7 +58,7 @@ pub fn negative_spring() -> Result<CaseResult, StudyError> {
     let mut rests = rests.pushed(1.0, 3000);
     rests.experiment.friction = friction_for_rest(&rigid(KNOB, wall_of(200.0, 0.0, 0)), &KNOBS);
     let runs = [runs_away.with_claimed_passivity(10.0), rests];
-    Ok(CaseResult::of(&scene, methods, MethodResult::in_no_hand(&scene)?, runs))
+    CaseReport::of(&scene, methods, MethodResult::in_no_hand(&scene)?, &runs)
 }
 
 /// The damping in N m s/rad by Colgate's and Schenkel's inequality, on a fine grid.
@@ -80,7 +80,7 @@ fn controller(scene: &Scene) -> Result<Response, StudyError> {
 }
 
 /// The rule `K < (b + B) / (T/2 + t_d)` at `B = b`.
-pub fn damped_rule() -> Result<CaseResult, StudyError> {
+pub fn damped_rule() -> Result<CaseReport, StudyError> {
     const DELAY: usize = 1;
     let damping = PADDLE.damping;
     let limit = (PADDLE.damping + damping) / (PERIOD * (0.5 + DELAY as f64));
@@ -95,5 +95,5 @@ pub fn damped_rule() -> Result<CaseResult, StudyError> {
     let rests = coupled(PADDLE, wall_of(0.95 * limit_of(&without)?, 0.5 * damping, DELAY));
     let rests = loop_run("B = b/2 behind the coupling", &rests, PADDLES, Outcome::Converges);
     let runs = [shakes.with_claimed_passivity(10.0), rests.pushed(1.0, 2000)];
-    Ok(CaseResult::of(&scene, methods, MethodResult::in_no_hand(&scene)?, runs))
+    CaseReport::of(&scene, methods, MethodResult::in_no_hand(&scene)?, &runs)
 }

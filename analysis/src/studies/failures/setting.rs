@@ -11,7 +11,7 @@ use haptic_servo::servo::Transducers;
 pub use super::loop_run::LoopRun;
 pub use super::method_result::{MethodResult, MethodVerdict};
 pub use super::motion::{Motion, Outcome};
-pub use super::report::CaseResult;
+pub use super::report::CaseReport;
 use crate::device;
 use crate::limits::{Limit, largest_stiffness, standard_coupling};
 use crate::simulation::Experiment;

@@ -24,7 +24,7 @@ fn latency() -> Latency {
 
 /// The sum of all delays, instead of the effect of a fractional delay between the samples:
 /// a spring at 0.99 of `b/(T/2 + t_d + tau)`, and one at 0.95 of the certified limit.
-pub fn mean_delay() -> Result<CaseResult, StudyError> {
+pub fn mean_delay() -> Result<CaseReport, StudyError> {
     let spring =
         |stiffness| Scene { latency: latency(), ..rigid(PADDLE, wall_of(stiffness, 0.0, 0)) };
     let limit = PADDLE.damping / (0.5 * PERIOD + DELAY + lag_of(BANDWIDTH));
@@ -49,7 +49,7 @@ pub fn mean_delay() -> Result<CaseResult, StudyError> {
     let certified = spring(0.95 * largest_spring(&PADDLE, PERIOD, latency(), 0));
     let rests = loop_run("0.95 of the certified limit", &certified, PADDLES, Outcome::Converges);
     let runs = [shakes.pushed(1.0, samples), rests.pushed(1.0, 4000)];
-    Ok(CaseResult::of(&scene, methods, truth, runs))
+    CaseReport::of(&scene, methods, truth, &runs)
 }
 
 /// Stiffness in N m/rad and damping in N m s/rad of the wall.
@@ -77,7 +77,7 @@ fn between() -> Scene {
 /// A servo computes `F(k+1) = E (x(k) - V F(k))` ahead and writes it a few microseconds after the next count.
 /// The torque of its count is late behind its coupling, but not at the motor: neither the wall that is one
 /// sample late nor the undelayed wall, both behind the coupling, is that loop.
-pub fn between_ends() -> Result<CaseResult, StudyError> {
+pub fn between_ends() -> Result<CaseReport, StudyError> {
     let of_end = |method: &str, delay| MethodResult {
         method: method.into(),
         ..MethodResult::certificate(&end(delay))
@@ -98,5 +98,5 @@ pub fn between_ends() -> Result<CaseResult, StudyError> {
     let matched = Scene { coupling: Coupling::Matched, latency: scene.latency, ..end(0) };
     let rests =
         loop_run("the wall behind the matched coupling", &matched, PADDLES, Outcome::Converges);
-    Ok(CaseResult::of(&scene, methods, truth, [shakes, rests.pushed(1.0, 2000)]))
+    CaseReport::of(&scene, methods, truth, &[shakes, rests.pushed(1.0, 2000)])
 }

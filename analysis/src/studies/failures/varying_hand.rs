@@ -46,7 +46,7 @@ pub fn at(times: f64) -> Scene {
 }
 
 /// At 1.005 of the limit, stable in every constant hand and unstable in a varying hand.
-pub fn varying_hand() -> Result<CaseResult, StudyError> {
+pub fn varying_hand() -> Result<CaseReport, StudyError> {
     let scene = at(1.005);
     let device = Chain::rigid(LIGHT.inertia, LIGHT.damping)?;
     let linear = needed(&scene, &device).unwrap_or(f64::NAN);
@@ -67,7 +67,7 @@ pub fn varying_hand() -> Result<CaseResult, StudyError> {
         .with_claimed_passivity(1.5)
         .pushed(1.0, 2000);
     let below = loop_run("0.995 of it", &at(0.995), PADDLES, Outcome::Converges).pushed(1.0, 2000);
-    Ok(CaseResult::of(&scene, methods, truth, [still, below]))
+    CaseReport::of(&scene, methods, truth, &[still, below])
 }
 
 /// The path of a coefficient through the hand.

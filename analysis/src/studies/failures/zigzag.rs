@@ -19,7 +19,7 @@ const BESIDE: f64 = 0.1;
 const ALMOST: f64 = 0.99;
 
 /// A wall with almost the friction that it needs: without the hand it comes to rest.
-pub fn zigzag() -> Result<CaseResult, StudyError> {
+pub fn zigzag() -> Result<CaseReport, StudyError> {
     let scene = wall();
     let needed = encoder_friction(&scene, &PADDLES);
     // With any DAC resolution.
@@ -32,7 +32,7 @@ pub fn zigzag() -> Result<CaseResult, StudyError> {
     let gained = gained(&scene, ALMOST * needed)?;
     let reason = "a hand that goes over one edge and back gets {} J out each time";
     let truth = MethodResult::new("zigzag", MethodVerdict::of(gained <= 0.0), gained, reason);
-    Ok(CaseResult { methods, certificate, truth, runs: vec![rests] })
+    CaseReport::with(methods, certificate, truth, &[rests])
 }
 
 /// The wall: neither delayed nor coupled, so that its torque is the encoder's step times its gains.
