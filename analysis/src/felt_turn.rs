@@ -4,7 +4,6 @@
 use std::f64::consts::TAU;
 
 use haptic_servo::certificate::Rejection;
-use haptic_servo::dac::DacCode;
 use haptic_servo::environment::{Ends, Profile};
 use haptic_servo::scene::Scene;
 use haptic_servo::servo::{BuildError, Transducers};
@@ -13,6 +12,7 @@ use thiserror::Error;
 use crate::controller::{Tick, controller};
 use crate::device::Hand;
 use crate::hand::HandTrajectory;
+use crate::identify::rig::torque_of;
 use crate::lockstep::{SimulatedDevice, run};
 use crate::profile_curve::ProfileCurve;
 use crate::simulation::SimulationError;
@@ -65,8 +65,6 @@ impl FeltTurn {
         let trajectory = HandTrajectory { description, hand, path, release: f64::INFINITY };
         let mut device = SimulatedDevice::new(scene, trajectory.clone(), transducers)?;
         let ticks = (TIMES[2] / scene.timing.period).ceil() as usize;
-        let torque_per_code =
-            transducers.full_scale_torque / f64::from(DacCode::CODES_TO_FULL_SCALE);
         let around = 0.5 * way / REPETITIONS;
         let curve = ProfileCurve::over(scene, &(-around..way + around));
         let curve = curve.ok_or(FeltTurnError::NoProfile)?;
@@ -74,11 +72,11 @@ impl FeltTurn {
         let time: Vec<f64> = (0..ticks).map(|tick| tick as f64 * scene.timing.period).collect();
         let angle = |tick: &Tick| tick.count as f64 * TAU / transducers.counts_per_turn;
         // The motor applies the code, and a torque that pushes back is minus that.
-        let code = |tick: &Tick| f64::from(tick.code) - f64::from(DacCode::MID_SCALE.get());
+        let torque = |tick: &Tick| -torque_of(tick.code, transducers.full_scale_torque);
         Ok(Self {
             angle: run.ticks.iter().map(angle).collect(),
             setpoint: time.iter().map(|time| trajectory.position(*time)).collect(),
-            torque: run.ticks.iter().map(|tick| -code(tick) * torque_per_code).collect(),
+            torque: run.ticks.iter().map(torque).collect(),
             time,
             curve,
         })

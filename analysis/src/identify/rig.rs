@@ -85,9 +85,8 @@ impl MeasuredDevice {
         let still = Experiment::still(&scene);
         let experiment = Experiment { plant: plant.clone(), friction, cogging, ..still };
         let integration = Integration::default();
-        experiment.tick(integration)?;
         Ok(Self {
-            machine: Machine::new(&experiment, integration),
+            machine: Machine::new(&experiment, integration)?,
             reading: Reading::new(encoder, Some(TAU / sensing.counts_per_turn)),
             encoder: SimulatedEncoder::new(sensing.counts_per_turn),
             torque_noise: sensing.torque_noise,

@@ -80,7 +80,7 @@ impl NonlinearLoop {
         let encoder = experiment.scene.latency.encoder;
         Ok(Self {
             servo: UnquantizedServo::new(&experiment.scene)?,
-            machine: Machine::new(experiment, integration),
+            machine: Machine::new(experiment, integration)?,
             reading: Reading::new(encoder, experiment.encoder_step).failing(experiment.dropped),
             leaves_out: encoder.leaves_out(period, worst_period),
             fault: experiment.fault(),
@@ -148,7 +148,11 @@ impl NonlinearLoop {
 
 impl Machine {
     /// The plant of an experiment at its start.
-    pub fn new(experiment: &Experiment, integration: Integration) -> Self {
+    ///
+    /// # Errors
+    /// Where the machine is too fast for its motion over a period to be computed.
+    pub fn new(experiment: &Experiment, integration: Integration) -> Result<Self, SimulationError> {
+        let tick = experiment.tick(integration)?;
         let (plant, discretization) =
             (&experiment.machine(), experiment.discretization(integration));
         let omega = experiment.hand_torque.omega();
@@ -160,13 +164,12 @@ impl Machine {
             let state = plant.at(&state);
             Body::Disturbed(Box::new(Disturbed { plant, period, state }))
         } else {
-            let tick = DiscretePlant::new(plant, &discretization, omega);
             let next = state.clone();
             Body::Smooth(Box::new(Smooth { tick, period, state, next }))
         };
         let whole = discretization.whole;
         let torques = VecDeque::from(vec![0.0; whole + 1]);
-        Self { body, measured: plant.measured(), whole, torques }
+        Ok(Self { body, measured: plant.measured(), whole, torques })
     }
 
     /// Its states.

@@ -1,10 +1,10 @@
 //! The device around a servo with all features of a simulation: masses in a hand, Coulomb friction, encoder
 //! counts and DAC codes.
 
-use haptic_servo::dac::DacCode;
 use haptic_servo::servo::Transducers;
 
 use crate::device::SimulatedEncoder;
+use crate::identify::rig::torque_of;
 use crate::lockstep::PlantIo;
 use crate::simulation::plant::POSITION;
 use crate::simulation::torque_signal::TorqueSignal;
@@ -15,7 +15,8 @@ pub struct LoadedDevice {
     machine: Machine,
     hand_torque: TorqueSignal,
     encoder: SimulatedEncoder,
-    torque_per_code: f64,
+    /// Torque in N m of the motor at the largest code.
+    full_scale: f64,
     /// Position in rad at each tick.
     pub positions: Vec<f64>,
 }
@@ -27,14 +28,11 @@ impl LoadedDevice {
         transducers: &Transducers,
     ) -> Result<Self, SimulationError> {
         let integration = Integration::default();
-        // Checks the plant's motion.
-        experiment.tick(integration)?;
-        let full_scale = transducers.full_scale_torque;
         Ok(Self {
-            machine: Machine::new(experiment, integration),
+            machine: Machine::new(experiment, integration)?,
             hand_torque: experiment.hand_torque.clone(),
             encoder: SimulatedEncoder::new(transducers.counts_per_turn),
-            torque_per_code: full_scale / f64::from(DacCode::CODES_TO_FULL_SCALE),
+            full_scale: transducers.full_scale_torque,
             positions: Vec::new(),
         })
     }
@@ -51,11 +49,7 @@ impl PlantIo for LoadedDevice {
 
     fn hold(&mut self, code: u16) {
         self.positions.push(self.position());
-        let codes = f64::from(code) - f64::from(DacCode::MID_SCALE.get());
-        self.machine.tick(
-            self.positions.len() - 1,
-            &self.hand_torque,
-            codes * self.torque_per_code,
-        );
+        let torque = torque_of(code, self.full_scale);
+        self.machine.tick(self.positions.len() - 1, &self.hand_torque, torque);
     }
 }
