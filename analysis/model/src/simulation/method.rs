@@ -4,43 +4,31 @@
 //! plant's states the matrix has the held inputs, and the sine torque of the hand with its cosine, whose
 //! values within a step are exact in all methods.
 
+use haptic_servo::words;
 use nalgebra::{DMatrix, DVector, Matrix2, linalg::balancing};
 
 use super::plant::{INPUTS, Input, Plant};
 
-/// A method of integration.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
-pub enum Method {
+words! {
+    /// A method of integration, in one word for arguments.
+    #[derive(Default)]
+    #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+    Method {
     /// Matrix exponential: exact for every step.
     #[default]
-    Exact,
+    Exact "exact",
     /// Explicit Euler: all states from the derivatives at the start of the step.
-    Euler,
+    Euler "euler",
     /// Semi-implicit Euler: the positions from the velocities at the end of the step.
-    SemiImplicit,
+    SemiImplicit "semi-implicit",
     /// Fourth-order Runge-Kutta.
-    Rk4,
+    Rk4 "rk4",
     /// Trapezoidal rule.
-    Tustin,
+    Tustin "tustin",
+    }
 }
 
 impl Method {
-    /// All values.
-    pub const ALL: [Self; 5] =
-        [Self::Exact, Self::Euler, Self::SemiImplicit, Self::Rk4, Self::Tustin];
-
-    /// In one word, for arguments.
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::Exact => "exact",
-            Self::Euler => "euler",
-            Self::SemiImplicit => "semi-implicit",
-            Self::Rk4 => "rk4",
-            Self::Tustin => "tustin",
-        }
-    }
-
     /// Its name in the literature.
     pub const fn name(self) -> &'static str {
         match self {

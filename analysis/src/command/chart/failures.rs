@@ -1,12 +1,11 @@
 //! `haptic chart failures`: the springs that methods of integration show as stable, and the springs that are
 //! stable.
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 use super::output::OutputArguments;
 use crate::chart::{self, Chart, Data};
 use crate::command::status::CommandError;
-use crate::simulation::method::Method;
 use crate::studies::failures::region::{METHODS, Region};
 
 #[derive(Debug, Args)]
@@ -21,7 +20,7 @@ pub fn draw() -> Result<Chart, CommandError> {
     let rows = regions.into_iter().flat_map(|Region { device, truth, certified, apparent }| {
         METHODS.into_iter().zip(apparent).flat_map(move |(method, points)| {
             points.into_iter().map(move |(steps, limit)| {
-                let words = [device.into(), word(method).as_str().into()].into_iter();
+                let words = [device.into(), method.as_str().into()].into_iter();
                 words.chain([steps, limit, truth, certified].map(Into::into)).collect()
             })
         })
@@ -35,9 +34,4 @@ pub fn draw() -> Result<Chart, CommandError> {
         "certified (N m/rad)",
     ];
     Ok(Chart { picture, data: Data::new(header, rows) })
-}
-
-/// The method's name on the command line.
-fn word(method: Method) -> String {
-    method.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
 }
