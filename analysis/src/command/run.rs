@@ -23,6 +23,7 @@ use super::status::{CommandError, CommandStatus};
 use super::value_parsers::positive;
 use super::virtual_board_build::VirtualBoardBuild;
 use crate::bridge_run::{ShaftInput, run_on_bridge};
+use crate::chart::budget::BudgetRuns;
 use crate::compare_run::{Backend, Input, RunError, RunOutcome, run_with_backend, status};
 use crate::controller::{Controller, controller};
 use crate::counts_csv;
@@ -274,18 +275,8 @@ fn ran(
     Ok(run_with_backend(input, controller, backend, ticks, progress)?)
 }
 
-/// Two runs of a scene on this machine in the same hand, with the same host.
-pub struct HostRuns {
-    /// The scene's name.
-    pub name: String,
-    /// With the host's tank, and without.
-    pub runs: [RunOutcome; 2],
-    /// The hand.
-    pub hand: HandTrajectory,
-}
-
-/// Runs a scene with a host and its tank, and without the tank.
-pub fn beside_host(scene: &str, law: HostLaw) -> Result<HostRuns, CommandError> {
+/// Runs a scene with a host and its tank, and without the tank; the scene's name comes with the runs.
+pub fn beside_host(scene: &str, law: HostLaw) -> Result<(String, BudgetRuns), CommandError> {
     let arguments = Arguments {
         scene: scene.to_owned(),
         target: Target::Host,
@@ -314,7 +305,7 @@ pub fn beside_host(scene: &str, law: HostLaw) -> Result<HostRuns, CommandError> 
     };
     let runs = [run(true)?, run(false)?];
     let RunSetup { name, trajectory, .. } = fresh()?;
-    Ok(HostRuns { name, runs, hand: trajectory })
+    Ok((name, BudgetRuns { runs, hand: trajectory }))
 }
 
 /// Runs it in a hand with a host beside it, and its tank or none.

@@ -5,7 +5,6 @@ use haptic_model::host::HostLaw;
 
 use super::output::OutputArguments;
 use crate::chart::Chart;
-use crate::chart::budget::BudgetRuns;
 use crate::command::run;
 use crate::command::status::CommandError;
 use crate::quantity::shortened;
@@ -25,8 +24,7 @@ pub struct Arguments {
 /// Runs the scene twice and draws the energies.
 pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
     let Arguments { scene, host, .. } = arguments;
-    let runs = run::beside_host(scene, *host)?;
-    let title = format!("{}: energy taken from the host {host}", shortened(&runs.name, 40));
-    let runs = BudgetRuns { runs: runs.runs, hand: runs.hand };
+    let (name, runs) = run::beside_host(scene, *host)?;
+    let title = format!("{}: energy taken from the host {host}", shortened(&name, 40));
     Ok(Chart { picture: runs.draw(&title)?, data: runs.data() })
 }
