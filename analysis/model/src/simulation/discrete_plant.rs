@@ -233,7 +233,7 @@ impl DiscretePlant {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use haptic_servo::scene::{Device, EncoderReading, TimeRange};
+    use haptic_servo::scene::Device;
 
     #[test]
     fn latency_splits_the_tick_and_nothing_else() {
@@ -249,59 +249,5 @@ mod tests {
         near(&late.hand, &prompt.hand);
         near(&late.sine[0], &prompt.sine[0]);
         near(&late.sine[1], &prompt.sine[1]);
-    }
-
-    /// Torques whose updates are 60 us later than a tick's, or 310 us where they are 250 us apart, against the
-    /// amplifier's definition: at each update a new straight line, in steps of a us of a Runge-Kutta method.
-    #[test]
-    fn a_reading_is_older_than_the_updates_of_its_tick() {
-        const DEVICE: Device = Device { inertia: 2e-4, damping: 0.02, passivity: None };
-        const BETWEEN: f64 = 2.5e-4;
-        for age in [6e-5, 3.1e-4] {
-            let encoder = EncoderReading { age: TimeRange::exactly(age), ..EncoderReading::IDEAL };
-            let sampled = Latency::sampled(4, 4e-4, 1e-3);
-            let latency = sampled.read_by(Box::leak(Box::new(encoder)));
-            let plant = Plant::rigid(DEVICE).with_lags(&latency, 1e-3);
-            let discretization = Discretization::exact(1e-3).delayed(&latency, 0.0);
-            let tick = DiscretePlant::checked(&plant, &discretization, 0.0).unwrap();
-            assert_eq!(tick.whole, 0);
-            let commands = [0.3, -0.1, 0.7, 0.0, 0.2, -0.4];
-            let mut states = plant.state_at(0.01, 0.5);
-            // Position, velocity, torque, and its slope.
-            let (mut motion, mut slope) = ([0.01, 0.5, 0.0], 0.0);
-            let left = (-BETWEEN / 4e-4_f64).exp();
-            for (k, &command) in commands.iter().enumerate() {
-                let before = if k == 0 { 0.0 } else { commands[k - 1] };
-                let old = &tick.transition * &states + &tick.previous * before;
-                states = old + &tick.motor * command;
-                for us in 0..1000_usize {
-                    let now = 1000 * k + us;
-                    let since = (now as f64 - age * 1e6).rem_euclid(250.0);
-                    if since.min(250.0 - since) < 0.5 {
-                        let due = us as f64 * 1e-6 >= age + BETWEEN - 5e-7;
-                        let wanted = if due { command } else { before };
-                        slope = (1.0 - left) / BETWEEN * (wanted - motion[2]);
-                    }
-                    let rate = |[_, velocity, torque]: [f64; 3]| {
-                        let pushed = torque - DEVICE.damping * velocity;
-                        [velocity, pushed / DEVICE.inertia, slope]
-                    };
-                    let further = |by: [f64; 3], time: f64| {
-                        std::array::from_fn(|at| motion[at] + time * by[at])
-                    };
-                    let first = rate(motion);
-                    let second = rate(further(first, 5e-7));
-                    let third = rate(further(second, 5e-7));
-                    let last = rate(further(third, 1e-6));
-                    motion = std::array::from_fn(|at| {
-                        let inner = 2.0 * (second[at] + third[at]);
-                        motion[at] + 1e-6 / 6.0 * (first[at] + inner + last[at])
-                    });
-                }
-                for (state, expected) in states.iter().zip(motion) {
-                    assert!((state - expected).abs() < 1e-11, "{age}, {k}: {states} {motion:?}");
-                }
-            }
-        }
     }
 }

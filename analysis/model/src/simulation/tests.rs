@@ -16,9 +16,9 @@ use crate::disturbance::{Cogging, Sine, sine};
 use crate::fixture::{STANDARD, on_paddle};
 use crate::missed::Missed;
 
-/// On another device than the paddle, without a coupling.
-fn scene(device: Device, environment: Environment) -> Scene {
-    Scene { device, ..on_paddle(environment, Coupling::Rigid) }
+/// On a slower device than the paddle, without a coupling.
+fn scene(environment: Environment) -> Scene {
+    Scene::of(Device::damped(0.05, 0.5), 1e-3, environment)
 }
 
 fn paper(environment: Environment) -> Scene {
@@ -114,9 +114,8 @@ fn decay(experiment: &Experiment) -> f64 {
 /// missed ticks is 2 b / T = 1000.
 #[test]
 fn missed_ticks_need_the_longest_time_between_updates() {
-    let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
     let spring = |stiffness| {
-        let scene = scene(device, Wall::spring(stiffness, 0).alone());
+        let scene = scene(Wall::spring(stiffness, 0).alone());
         moving(&scene, 4000, 1e-3)
     };
     // The remaining damping, b - K T / 2, takes seconds.
@@ -132,9 +131,8 @@ fn missed_ticks_need_the_longest_time_between_updates() {
 #[test]
 fn a_reading_that_fails_is_the_one_before_or_a_missed_tick() {
     const READING: EncoderReading = EncoderReading { dropped: 1, ..EncoderReading::IDEAL };
-    let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
     let moves = |wall: Wall, worst_period, [missed, dropped]: [Missed; 2]| {
-        let plain = scene(device, wall.alone());
+        let plain = scene(wall.alone());
         let timing = Timing { worst_period, ..plain.timing };
         let scene = Scene { timing, latency: plain.latency.read_by(&READING), ..plain };
         let experiment = Experiment { missed, dropped, ..moving(&scene, 500, 1e-3) };
@@ -142,7 +140,7 @@ fn a_reading_that_fails_is_the_one_before_or_a_missed_tick() {
     };
     let (every, none) = (Missed::Every(3), Missed::None);
     let (spring, damped) = (Wall::spring(100.0, 0), Wall::damped(100.0, 0.2, 0));
-    let twice = Some(2.0 * scene(device, spring.alone()).timing.period);
+    let twice = Some(2.0 * scene(spring.alone()).timing.period);
     for (wall, worst, equal) in [(spring, None, true), (damped, None, false), (damped, twice, true)]
     {
         let [missed, dropped] = [[every, none], [none, every]].map(|laws| moves(wall, worst, laws));
@@ -156,8 +154,7 @@ fn a_reading_that_fails_is_the_one_before_or_a_missed_tick() {
 #[test]
 fn more_failed_readings_than_allowed_are_a_fault() {
     const READING: EncoderReading = EncoderReading { dropped: 1, ..EncoderReading::IDEAL };
-    let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
-    let plain = scene(device, Wall::spring(100.0, 0).alone());
+    let plain = scene(Wall::spring(100.0, 0).alone());
     let scene = Scene { latency: plain.latency.read_by(&READING), ..plain };
     let dropped = Missed::Random { fraction: 0.1, seed: 5 };
     let experiment = Experiment { dropped, ..moving(&scene, 1000, 1e-3) };
@@ -168,19 +165,6 @@ fn more_failed_readings_than_allowed_are_a_fault() {
     let error = experiment.completed(second).unwrap_err().to_string();
     let expected = format!("encoder-reading: at sample {second}, at ");
     assert!(error.contains(&expected) && error.contains("`encoder.dropped` = 1"), "{error}");
-}
-
-/// Theory, section 8: the limit of the bare device with a latency is b / (T/2 + tau).
-#[test]
-fn latency_moves_the_limit() {
-    let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
-    let scene = scene(device, Wall::spring(1.0, 0).alone());
-    for latency in [1e-4, 3.3e-4, 9e-4] {
-        let experiment = Experiment { latency, ..Experiment::still(&scene) };
-        let found = crate::stability::critical_stiffness(&experiment, Integration::default());
-        let should = 0.5 / (0.5e-3 + latency);
-        assert!((found.unwrap().unwrap() / should - 1.0).abs() < 3e-3);
-    }
 }
 
 /// Theory, sections 6 and 8, behind a coupling: the certificate's number for an encoder's step bounds the torque
@@ -264,9 +248,8 @@ fn a_device_behind_the_matched_coupling_hums_and_rests_as_the_certificate_says()
 /// a mean speed. Beyond the speed of a sine with that property, motion grows.
 #[test]
 fn friction_dissipates_what_the_controller_generates_up_to_the_stated_speed() {
-    let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
     for (stiffness, friction) in [(1400.0, 0.05), (1200.0, 0.02)] {
-        let scene = scene(device, Wall::spring(stiffness, 0).alone());
+        let scene = scene(Wall::spring(stiffness, 0).alone());
         let steps = Resolution { friction: Some(friction), ..Resolution::default() };
         let assumptions = Assumptions::of(&scene, &assess(&scene), &steps);
         let speed = assumptions.iter().find_map(|one| match one {
@@ -346,6 +329,8 @@ fn integrated(case: &LateLoop, samples: usize, start: Motion) -> Vec<f64> {
     let (whole, part) = ((delay / period) as usize, delay / period - (delay / period).floor());
     let h = period / FINE as f64;
     let updates = case.latency.actuator_updates as usize;
+    // Where in a tick an update is: a reading may be older than one.
+    let first = (delay / h).round() as usize;
     // Fraction of its error that an updated amplifier removes until the next update.
     let caught_up = 1.0 - (-period / (updates as f64 * lag)).exp();
     // States: position, velocity, torque of the amplifier, angle behind the filter. The command is a torque,
@@ -377,7 +362,7 @@ fn integrated(case: &LateLoop, samples: usize, start: Motion) -> Vec<f64> {
             let age = if step as f64 + 0.5 < part * FINE as f64 { whole + 1 } else { whole };
             let mut command = torques[torques.len() - 1 - age];
             if let Some(between) = FINE.checked_div(updates) {
-                if step % between == 0 {
+                if step % between == first % between {
                     slope = caught_up * (command - state[2]) * updates as f64 / period;
                 }
                 command = slope;
@@ -401,7 +386,13 @@ fn updated(updates: u16, late: f64) -> Latency {
     Latency { output_delay: TimeRange::exactly(delay), ..latency }
 }
 
-fn late_loops() -> [LateLoop; 8] {
+/// The same four times a period, read this long before an update.
+fn aged(age: f64) -> Latency {
+    let encoder = EncoderReading { age: TimeRange::exactly(age), ..EncoderReading::IDEAL };
+    Latency::sampled(4, 4e-4, 1e-3).read_by(Box::leak(Box::new(encoder)))
+}
+
+fn late_loops() -> [LateLoop; 10] {
     let lag = TimeRange::exactly;
     [
         LateLoop { latency: Latency::delayed(2.5e-4), matched: false },
@@ -419,6 +410,9 @@ fn late_loops() -> [LateLoop; 8] {
         LateLoop { latency: Latency::sampled(4, 3e-4, 1e-3), matched: false },
         LateLoop { latency: updated(8, 12.0), matched: false },
         LateLoop { latency: updated(5, 0.0), matched: false },
+        LateLoop { latency: aged(6e-5), matched: false },
+        // Older than the time between two updates.
+        LateLoop { latency: aged(3.1e-4), matched: false },
     ]
 }
 
@@ -456,9 +450,8 @@ fn delays_lags_and_a_matched_coupling_move_as_many_small_steps_have_it() {
 /// eigenvalue is on the circle there, also behind a matched coupling.
 #[test]
 fn stability_ends_where_an_eigenvalue_reaches_the_circle() {
-    let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
     for case in late_loops() {
-        let mut late = scene(device, Wall::spring(1.0, 1).alone());
+        let mut late = scene(Wall::spring(1.0, 1).alone());
         late.latency = case.latency;
         if case.matched {
             late.coupling = Coupling::Matched;
@@ -483,12 +476,13 @@ fn stability_ends_where_an_eigenvalue_reaches_the_circle() {
 fn gimbal(cogging: Cogging, damping: f64, encoder: &'static EncoderReading) -> Scene {
     let learnt = cogging.learnt(2048).unwrap();
     Scene {
-        device: Device { inertia: 3e-5, damping, passivity: None },
-        timing: Timing { period: 1e-4, worst_period: None },
-        coupling: Coupling::Rigid,
-        environment: Wall::spring(0.0, 1).alone().beside(learnt),
         latency: Latency::NONE.with_actuator_lag(8e-5).read_by(encoder),
         torque_limit: Some(0.1),
+        ..Scene::of(
+            Device::damped(3e-5, damping),
+            1e-4,
+            Wall::spring(0.0, 1).alone().beside(learnt),
+        )
     }
 }
 
