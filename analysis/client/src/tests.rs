@@ -7,23 +7,15 @@ use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use haptic_model::file::{Format, parse};
-use haptic_model::hand::HandTrajectory;
-use haptic_servo::boot::Program;
-use haptic_servo::certificate::Certified;
-use haptic_servo::encoder::CounterWidth;
-use haptic_servo::environment::Wall;
 use haptic_servo::host::HostTorque;
 use haptic_servo::parameter::Parameter;
-use haptic_servo::scene::{Coupling, Device, Scene};
-use haptic_servo::scene_type::Typed;
-use haptic_servo::servo::{Latched, RenderingOptions, Transducers};
-use haptic_servo::servo_loop::{Options, State};
+use haptic_servo::servo_loop::State;
 use haptic_servo::torque::LimitReason;
 use haptic_servo::wire::host::{HostReport, HostRequest, HostState};
 use haptic_servo::wire::message::{BoardUnits, Changes, LONGEST_TO_BOARD, ToBoard, ToHost};
 use haptic_servo::wire::{CHECKSUM, Decoder, PROTOCOL, encode};
 
-use super::simulated::{Pacing, SimulatedBoard, SimulatedDevice};
+use super::simulated::{Pacing, SimulatedBoard};
 use super::{Address, Link, LinkError, RequestResult, StreamError, StreamTick, change};
 
 fn loopback() -> Address {
@@ -51,33 +43,6 @@ fn board_with(stiffness: f64, tables: &str) -> Result<SimulatedBoard, String> {
     SimulatedBoard::of_file(&file, &loopback(), Pacing::RealTime).map_err(|error| error.to_string())
 }
 
-/// A wall that leaves a share for a host, on a board.
-fn hosted() -> SimulatedBoard {
-    const CERTIFIED: Certified<Scene> = Scene {
-        coupling: Coupling::Spring { stiffness: 44.0 },
-        torque_limit: Some(1.0),
-        ..Scene::of(
-            Device::damped(2.2e-5, 0.022),
-            0.001,
-            Wall::damped(10.0, 0.002, 1).behind(0.0).alone(),
-        )
-    }
-    .certified();
-    const HOST: HostTorque =
-        HostTorque { energy: 0.05, power: 0.5, damping: 0.004, torque: 0.5, timeout: 0.05 };
-    haptic_servo::scene_type!(WithHost: CERTIFIED, host: HOST);
-    let transducers =
-        Transducers { counter: CounterWidth::Bits16, ..Transducers::of(61_440.0, 2.0) };
-    let (rendering, options) = (RenderingOptions::DEFAULT, Options::DEFAULT);
-    let scene = *Typed::<WithHost>::certified().scene();
-    let program = Program { scene, transducers, rendering, options };
-    let scene = CERTIFIED.scene();
-    let hand = HandTrajectory::for_environment(&scene.environment);
-    let plant = Box::new(SimulatedDevice::new(scene, hand, &transducers).unwrap());
-    let pacing = Pacing::RealTime;
-    SimulatedBoard::start::<_, f32, Latched>("hosted", program, plant, &loopback(), pacing).unwrap()
-}
-
 /// Another program at a port, which says `greeting` and returns all that it heard.
 fn other(greeting: Vec<u8>) -> (Address, JoinHandle<Vec<u8>>) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
@@ -94,7 +59,9 @@ fn other(greeting: Vec<u8>) -> (Address, JoinHandle<Vec<u8>>) {
 
 #[test]
 fn the_budget_of_a_host_changes_while_its_board_runs() {
-    let board = hosted();
+    let host =
+        "host = { energy = 0.05, power = 0.5, damping = 0.004, torque = 0.5, timeout = 0.05 }";
+    let board = board_with(10.0, host).unwrap();
     let mut link = Link::open(board.address()).unwrap();
     let budget = |link: &Link| link.board().budget.unwrap();
     assert_eq!((budget(&link).energy, budget(&link).power), (0.05, 0.5));
@@ -104,10 +71,10 @@ fn the_budget_of_a_host_changes_while_its_board_runs() {
     let changed = HostTorque { energy: 0.1, power: 0.0, ..budget(&link) };
     assert_eq!(budget(&link), changed);
     let margin = link.parameters().unwrap().margin.unwrap() + changed.damping;
-    for refused in ["host.damping=0.02", "stiffness=36", "host.torque=1.5", "host.timeout=0.001"] {
+    for refused in ["host.damping=0.02", "stiffness=28", "host.torque=1.5", "host.timeout=0.001"] {
         let result = link.request(change::line(refused).unwrap()).unwrap();
         let RequestResult::Refused(why) = result else { panic!("{refused} was not refused") };
-        let bounds = ["below the margin of", "full scale of 2 N m", "two periods"];
+        let bounds = ["below the margin of", "full scale of 1.5 N m", "two periods"];
         assert!(bounds.iter().any(|bound| why.contains(bound)), "{why}");
         if refused.contains("damping") {
             let stated = why.split("margin of ").nth(1).unwrap().split(' ').next().unwrap();
