@@ -195,7 +195,7 @@ impl Shaft for HandHeldShaft {
 mod tests {
     use haptic_servo::current::{B_G431B_ESC1, Drive, Motor, Supply, Winding};
     use haptic_servo::environment::Wall;
-    use haptic_servo::scene::{Coupling, Device, Latency, Timing};
+    use haptic_servo::scene::{Coupling, Device, Latency};
 
     use super::*;
 
@@ -264,12 +264,9 @@ mod tests {
         let (inertia, damping, torque) = (2.2e-5, 0.022, 0.1);
         let wall = Wall::spring(20.0, 0).behind(0.0);
         let scene = Scene {
-            device: Device { inertia, damping, passivity: None },
-            timing: Timing { period: PERIOD, worst_period: None },
             coupling: Coupling::Matched,
-            environment: wall.alone(),
             latency: Latency::sampled(40, 8e-5, PERIOD),
-            torque_limit: None,
+            ..Scene::of(Device::damped(inertia, damping), PERIOD, wall.alone())
         };
         let hand = HandTrajectory::push_and_let_go();
         let mut shaft = HandHeldShaft::new(&scene, hand, &TRANSDUCERS, &current_loop()).unwrap();

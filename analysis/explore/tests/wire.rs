@@ -10,7 +10,7 @@ use haptic_servo::encoder::{CounterWidth, RawCount};
 use haptic_servo::environment::{Environment, Wall};
 use haptic_servo::number::Format;
 use haptic_servo::parameter::Parameter;
-use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::scene::{Coupling, Device, Scene};
 use haptic_servo::servo::{Latched, PreparedServo, RenderingOptions, Transducers};
 use haptic_servo::servo_loop::{self, FrameQueue, Frames, Inbox, Mailbox, ServoLoop};
 use haptic_servo::wire::message::ToHost;
@@ -24,22 +24,16 @@ const DEPTH: i32 = 300;
 const FRAMES: usize = 64;
 
 fn scene(stiffness: f64) -> Scene {
+    let wall = Wall::damped(stiffness, 0.01, 1).behind(0.0).alone();
     Scene {
-        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-        timing: Timing { period: 0.001, worst_period: None },
         coupling: Coupling::Spring { stiffness: 44.0 },
-        environment: Wall::damped(stiffness, 0.01, 1).behind(0.0).alone(),
-        latency: Latency::NONE,
         torque_limit: Some(1.0),
+        ..Scene::of(Device::damped(2.2e-5, 0.022), 0.001, wall)
     }
 }
 
-const TRANSDUCERS: Transducers = Transducers {
-    counts_per_turn: 61_440.0,
-    counter: CounterWidth::Bits16,
-    full_scale_torque: 2.0,
-    largest_speed: Transducers::NO_HAND_IS_FASTER,
-};
+const TRANSDUCERS: Transducers =
+    Transducers { counter: CounterWidth::Bits16, ..Transducers::of(61_440.0, 2.0) };
 
 /// A device that is held still.
 struct Still;

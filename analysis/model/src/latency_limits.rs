@@ -7,7 +7,7 @@ use std::ops::Range;
 use haptic_servo::certificate::PassivityProblem;
 use haptic_servo::environment::Wall;
 use haptic_servo::parameter::MAX_DELAY;
-use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::scene::{Device, Latency, Scene};
 
 /// Factor over the certified stiffness from which some hand is known to destabilise a spring: hands that do
 /// not vary in time allow at most 1.3 % more (theory, section 13.1).
@@ -84,12 +84,8 @@ pub fn lag_of(bandwidth: f64) -> f64 {
 /// The largest certified spring in N m/rad without a coupling, with a delay in samples.
 pub fn largest_spring(device: &Device, period: f64, latency: Latency, delay: usize) -> f64 {
     let scene = |stiffness| Scene {
-        device: *device,
-        timing: Timing { period, worst_period: None },
-        coupling: Coupling::Rigid,
-        environment: Wall::spring(stiffness, delay).alone(),
         latency,
-        torque_limit: None,
+        ..Scene::of(*device, period, Wall::spring(stiffness, delay).alone())
     };
     let passes =
         |stiffness| PassivityProblem::of(&scene(stiffness)).is_ok_and(|posed| posed.is_certified());

@@ -106,7 +106,6 @@ impl PlantIo for SimulatedDevice {
 #[cfg(test)]
 mod tests {
     use haptic_servo::dac::DacCode;
-    use haptic_servo::encoder::CounterWidth;
     use haptic_servo::environment::Wall;
     use haptic_servo::scene::{Coupling, Device};
 
@@ -116,17 +115,12 @@ mod tests {
     #[test]
     fn a_code_acts_from_its_phase_on() {
         let (inertia, damping, period, phase) = (2.2e-5, 0.022, 1e-3, 2e-4);
-        let wall = Wall::spring(22.0, 0);
         let scene = Scene {
-            device: Device { inertia, damping, passivity: None },
-            timing: Timing { period, worst_period: None },
             coupling: Coupling::Matched,
-            environment: wall.alone(),
             latency: Latency::delayed(phase),
-            torque_limit: None,
+            ..Scene::of(Device::damped(inertia, damping), period, Wall::spring(22.0, 0).alone())
         };
-        let transducers =
-            Transducers { counter: CounterWidth::Bits16, ..Transducers::of(61_440.0, 2.0) };
+        let transducers = Transducers::of(61_440.0, 2.0);
         let trajectory = HandTrajectory { release: 0.0, ..HandTrajectory::push_and_let_go() };
         let mut device = SimulatedDevice::new(&scene, trajectory, &transducers).unwrap();
         let rate = damping / inertia;

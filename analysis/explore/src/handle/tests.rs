@@ -5,7 +5,7 @@ use haptic_model::simulation::held_device::HeldDevice;
 use haptic_servo::certificate::Certified;
 use haptic_servo::encoder::{CounterWidth, RawCount};
 use haptic_servo::environment::Wall;
-use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::scene::{Coupling, Device, Scene};
 use haptic_servo::scene_type::Typed;
 use haptic_servo::servo::{Servo, Transducers};
 use serde_json::{Value, json};
@@ -63,12 +63,9 @@ fn record() -> Vec<(i32, u16)> {
 #[test]
 fn the_codes_are_those_of_the_servo_that_is_compiled_for_a_board() {
     const CERTIFIED: Certified<Scene> = Scene {
-        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-        timing: Timing { period: 1e-3, worst_period: None },
         coupling: Coupling::Spring { stiffness: 44.0 },
-        environment: Wall::damped(STIFFNESS, 0.01, 1).alone(),
-        latency: Latency::NONE,
         torque_limit: Some(2.0),
+        ..Scene::of(Device::damped(2.2e-5, 0.022), 1e-3, Wall::damped(STIFFNESS, 0.01, 1).alone())
     }
     .certified();
     haptic_servo::scene_type!(Compiled: CERTIFIED);

@@ -1,7 +1,7 @@
 use super::*;
 use crate::chain::{Link, Mass};
 use crate::file::{Format, parse, write};
-use crate::fixture::on_paddle;
+use crate::fixture::{file_on_paddle, on_paddle};
 use haptic_servo::environment::{Canceller, Environment, Wall};
 use haptic_servo::scene::{Latency, TimeRange};
 use proptest::prelude::*;
@@ -19,22 +19,9 @@ fn wall(stiffness: f64, damping: f64, delay: usize) -> Environment {
 }
 
 fn file(scene: Scene) -> SceneFile {
-    SceneFile {
-        host: None,
-        name: "designed".to_owned(),
-        scene,
-        chain: Chain::rigid(scene.device.inertia, scene.device.damping).unwrap(),
-        simulation: None,
-        hand: None,
-        encoder_step: None,
-        full_scale: None,
-        friction: None,
-        cogging: None,
-        supply: None,
-        motor: None,
-        shapes: None,
-        chip: None,
-    }
+    let chain = Chain::rigid(scene.device.inertia, scene.device.damping).unwrap();
+    let any = "[environment]\ntype = \"delayed-spring\"\nstiffness = 1.0\ndelay = 1\n";
+    SceneFile { scene, chain, ..file_on_paddle(any) }
 }
 
 /// The scene, written to a file and read back.
@@ -295,7 +282,7 @@ fn the_stiffest_wall_certifies_is_stiffer_and_more_damping_buys_more() {
         "[environment]\ntype = \"damper-wall\"\nstiffness = 9\ndamping = 0.001\ndelay = 1\n[coupling]\nstiffness = 44\n",
     ];
     for wall in walls {
-        let file = crate::fixture::file_on_paddle(&format!("{wall}[limits]\ntorque = 1.0\n"));
+        let file = file_on_paddle(&format!("{wall}[limits]\ntorque = 1.0\n"));
         let terms = Terms { judge: Judge::BOARD, exact: false, ..Terms::default() };
         let search = stiffest::Search::new(&file, &terms).unwrap();
         let found = search.run(|| {}).unwrap();

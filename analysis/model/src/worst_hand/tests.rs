@@ -3,7 +3,7 @@ use crate::chain::{EncoderPlace, Mass};
 use crate::fixture::on_paddle;
 use haptic_servo::certificate::certify;
 use haptic_servo::environment::Wall;
-use haptic_servo::scene::{Coupling, Device, Latency, TimeRange, Timing};
+use haptic_servo::scene::{Coupling, Device, Latency, TimeRange};
 
 fn device() -> Chain {
     Chain::rigid(2.2e-5, 0.022).unwrap()
@@ -86,13 +86,11 @@ fn no_hand_shakes_what_is_certified_behind_a_matched_coupling() {
 fn a_mass_behind_nothing_is_no_hand() {
     let (inertia, damping) = (2.912708129978716e-5, 0.03430654821215887);
     let scene = Scene {
-        device: Device { inertia, damping, passivity: None },
-        timing: Timing { period: 0.003042550575872087, worst_period: None },
-        ..scene(
-            8.3155701205929,
-            0.009421656226762594,
-            1,
-            Coupling::Spring { stiffness: 15.785823866956035 },
+        coupling: Coupling::Spring { stiffness: 15.785823866956035 },
+        ..Scene::of(
+            Device::damped(inertia, damping),
+            0.003042550575872087,
+            Wall::damped(8.3155701205929, 0.009421656226762594, 1).alone(),
         )
     };
     assert!(certify(&scene).is_ok());
@@ -134,11 +132,7 @@ fn a_device_that_is_not_collocated_oscillates_under_a_certified_spring() {
 fn a_position_that_nothing_holds_does_not_oscillate() {
     let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
     for period in [1e-4, 5e-5] {
-        let damper = Scene {
-            device,
-            timing: Timing { period, worst_period: None },
-            ..scene(0.0, 0.1, 1, Coupling::Rigid)
-        };
+        let damper = Scene::of(device, period, Wall::damped(0.0, 0.1, 1).alone());
         assert!(certify(&damper).is_ok());
         let chain = Chain::rigid(device.inertia, device.damping).unwrap();
         let found = search(&damper, &chain).unwrap();
