@@ -1,8 +1,8 @@
 //! Units of angle and torque, which scale a scene to a format with a range of 1.
 
-use haptic_servo::environment::{Coefficients, Environment, Rational};
+use haptic_servo::environment::{Coefficients, Environment};
 use haptic_servo::parameter::{NamedParameters, Parameter};
-use haptic_servo::scene::{Coupling, Device, Scene};
+use haptic_servo::scene::{Device, Scene};
 use haptic_servo::servo::Transducers;
 
 /// The units of a servo's numbers: powers of two, so that a change of units is exact.
@@ -26,23 +26,28 @@ impl Units {
 
     /// The same scene in these units.
     pub fn scene(&self, scene: &Scene) -> Scene {
-        let stiffness = self.angle / self.torque;
-        let Device { inertia, damping, passivity } = scene.device;
-        Scene {
-            device: Device {
-                inertia: inertia * stiffness,
-                damping: damping * stiffness,
-                passivity: passivity.map(|passivity| passivity * stiffness),
-            },
-            timing: scene.timing,
-            coupling: match scene.coupling {
-                coupling @ (Coupling::Rigid | Coupling::Matched) => coupling,
-                Coupling::Spring { stiffness: k } => Coupling::Spring { stiffness: k * stiffness },
-            },
-            environment: self.environment(scene.environment),
-            latency: scene.latency,
-            torque_limit: scene.torque_limit.map(|limit| limit / self.torque),
+        // N m/rad, and N m s/rad and kg m^2 as well.
+        let slope = |value: f64| value * self.angle / self.torque;
+        let mut scene = *scene;
+        for &parameter in Parameter::ALL {
+            let Some(number) = scene.value(parameter) else { continue };
+            *number = match (parameter, parameter.name_and_unit().1) {
+                // A turn has fewer units.
+                (Parameter::Count, _) => *number * self.angle,
+                (_, "rad") => *number / self.angle,
+                (_, "N m") => *number / self.torque,
+                (_, "N m/rad" | "N m s/rad") => slope(*number),
+                _ => *number,
+            };
         }
+        let Device { inertia, damping, passivity } = scene.device;
+        let (inertia, damping) = (slope(inertia), slope(damping));
+        scene.device = Device { inertia, damping, passivity: passivity.map(slope) };
+        if let Environment::Rational(rational) = &mut scene.environment {
+            let scaled: Vec<_> = rational.numerator.as_slice().iter().map(|n| slope(*n)).collect();
+            rational.numerator = Coefficients::new(&scaled).unwrap_or(rational.numerator);
+        }
+        scene
     }
 
     /// The same sensor and motor in these units.
@@ -53,32 +58,6 @@ impl Units {
             counter: transducers.counter,
             full_scale_torque: transducers.full_scale_torque / self.torque,
             largest_speed: transducers.largest_speed / self.angle,
-        }
-    }
-
-    fn environment(&self, environment: Environment) -> Environment {
-        // N m/rad, and N m s/rad as well.
-        let slope = |value: f64| value * self.angle / self.torque;
-        let scaled = |mut environment: Environment, parameter: &Parameter| {
-            let Some(number) = environment.value(*parameter) else { return environment };
-            *number = match (parameter, parameter.name_and_unit().1) {
-                // A turn has fewer units.
-                (Parameter::Count, _) => *number * self.angle,
-                (_, "rad") => *number / self.angle,
-                (_, "N m") => *number / self.torque,
-                (_, "N m/rad" | "N m s/rad") => slope(*number),
-                _ => *number,
-            };
-            environment
-        };
-        match Parameter::ALL.iter().fold(environment, scaled) {
-            Environment::Rational(rational) => {
-                let scaled: Vec<_> =
-                    rational.numerator.as_slice().iter().map(|n| slope(*n)).collect();
-                let numerator = Coefficients::new(&scaled).unwrap_or(rational.numerator);
-                Environment::Rational(Rational { numerator, ..rational })
-            }
-            other => other,
         }
     }
 }
