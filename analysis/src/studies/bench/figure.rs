@@ -1,5 +1,7 @@
 //! A figure with its bound, or with a peer that was measured in the same run.
 
+use std::time::Instant;
+
 use serde::Serialize;
 
 use crate::studies::error::StudyError;
@@ -98,6 +100,13 @@ impl Figure {
             Err(error) => Err(error),
         }
     }
+}
+
+/// Time of some work in s.
+pub fn seconds(work: impl FnOnce()) -> f64 {
+    let start = Instant::now();
+    work();
+    start.elapsed().as_secs_f64()
 }
 
 /// The median of some values; 0 without values.

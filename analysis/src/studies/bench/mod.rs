@@ -16,7 +16,7 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
-use self::figure::{Pair, median};
+use self::figure::{Pair, median, seconds};
 use crate::latency_limits::{lag_of, largest_spring};
 use crate::stability_map::{Family, Map, MapError};
 use crate::studies::failures::setting::{PADDLE, PERIOD, rational, rigid};
@@ -84,14 +84,9 @@ pub fn map_rate(scene: &Scene, rounds: usize) -> Result<f64, MapError> {
 }
 
 /// Median time of some work in s. The first round fills caches and starts threads, and is discarded.
-fn median_time(rounds: usize, mut work: impl FnMut()) -> f64 {
-    let mut round = || {
-        let start = Instant::now();
-        work();
-        start.elapsed().as_secs_f64()
-    };
-    round();
-    median((0..rounds).map(|_| round()).collect())
+pub(super) fn median_time(rounds: usize, mut work: impl FnMut()) -> f64 {
+    work();
+    median((0..rounds).map(|_| seconds(&mut work)).collect())
 }
 
 /// Median time of one verdict on one core of this machine in microseconds.

@@ -1,14 +1,13 @@
 //! Verdicts and steps by packages of Python, which one process of Python runs.
 
 use std::hint::black_box;
-use std::time::Instant;
 
 use haptic_servo::certificate::assess;
 use haptic_servo::environment::Environment;
 use haptic_servo::scene::Scene;
 use serde_json::json;
 
-use super::figure::Pair;
+use super::figure::{Pair, seconds};
 use super::peer::Peer;
 use super::steps::{STEPS, numbers, steps_beside};
 use crate::studies::error::StudyError;
@@ -69,16 +68,14 @@ impl PythonPeers {
         let undecided = count(&|theirs, _| theirs.is_nan());
         let wrong = count(&|theirs, ours| !theirs.is_nan() && (theirs == 1.0) != ours);
         let each = 1e6 / scenes.len() as f64;
-        let seconds = format!("seconds {name}");
+        let timed = format!("seconds {name}");
         let judge = || scenes.iter().for_each(|scene| _ = black_box(assess(black_box(scene))));
         // The second run counts, so that the caches are filled.
         let judged = || {
             judge();
-            let start = Instant::now();
-            judge();
-            Ok::<_, StudyError>(start.elapsed().as_secs_f64() * each)
+            Ok::<_, StudyError>(seconds(judge) * each)
         };
-        let pair = Pair::in_turns(rounds, judged, || Ok(peer.number(&seconds)? * each))?;
+        let pair = Pair::in_turns(rounds, judged, || Ok(peer.number(&timed)? * each))?;
         let of = values.len();
         Ok((pair, format!("{about}; of {of}: {wrong} wrong, {undecided} undecided")))
     }

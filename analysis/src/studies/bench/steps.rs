@@ -2,11 +2,10 @@
 
 use std::hint::black_box;
 use std::process::Command;
-use std::time::Instant;
 
 use haptic_servo::scene::{Coupling, Device, Scene};
 
-use super::figure::{Pair, median};
+use super::figure::{Pair, median, seconds};
 use super::peer::Peer;
 use crate::device::Motion;
 use crate::simulation::{Experiment, Integration, Simulator, Trajectory};
@@ -59,9 +58,7 @@ fn simulator() -> Simulator {
 fn nanoseconds(out: &mut Trajectory) -> f64 {
     simulator().fill(black_box(out));
     let mut simulator = simulator();
-    let start = Instant::now();
-    simulator.fill(black_box(out));
-    start.elapsed().as_secs_f64() * 1e9 / STEPS as f64
+    seconds(|| simulator.fill(black_box(out))) * 1e9 / STEPS as f64
 }
 
 /// Median time of a step in ns on one core.

@@ -1,7 +1,6 @@
 //! The results of a model of a scene: verdicts, motion, and the cost of computing them.
 
 use std::hint::black_box;
-use std::time::Instant;
 
 use haptic_servo::scene::Scene;
 use serde::Serialize;
@@ -10,7 +9,7 @@ use super::Model;
 use crate::file::SceneFile;
 use crate::simulation::{Experiment, Integration, SimulationError, Trajectory, simulate};
 use crate::stability;
-use crate::studies::bench::figure::median;
+use crate::studies::bench::median_time;
 use crate::verdict::{self, VerdictReport};
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -43,7 +42,7 @@ impl ModelResult {
         let stability = stability::judge(&experiment, integration)?;
         Ok(Self {
             states: stability::closed_loop(&experiment, integration)?.matrix.nrows(),
-            steps_per_second: speed(&experiment)?,
+            steps_per_second: speed(&experiment),
             delta: certificate.as_ref().map(|report| report.delta),
             certificate: certificate.map(|report| report.verdict),
             stability: stability.verdict,
@@ -70,15 +69,10 @@ fn declared(file: &SceneFile) -> Option<f64> {
 }
 
 /// Median over a few rounds.
-fn speed(experiment: &Experiment) -> Result<f64, SimulationError> {
+fn speed(experiment: &Experiment) -> f64 {
     const STEPS: usize = 4096;
     const ROUNDS: usize = 5;
     let experiment = Experiment { samples: STEPS, ..experiment.clone() };
-    let mut times = Vec::new();
-    for _ in 0..ROUNDS {
-        let start = Instant::now();
-        black_box(simulate(black_box(&experiment), Integration::default())?);
-        times.push(start.elapsed().as_secs_f64());
-    }
-    Ok(STEPS as f64 / median(times))
+    let run = || _ = black_box(simulate(black_box(&experiment), Integration::default()));
+    STEPS as f64 / median_time(ROUNDS, run)
 }

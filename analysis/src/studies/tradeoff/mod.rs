@@ -11,13 +11,13 @@ pub mod sine;
 pub mod ticks;
 
 use std::io::{Read, Write};
-use std::time::Instant;
 
 pub use comparison::{Axis, Comparison};
 
 use crate::emulator::Client;
 use crate::progress;
 use crate::quantity::significant;
+use crate::studies::bench::figure::seconds;
 use crate::studies::error::StudyError;
 use crate::table::{Column, Table, TableError};
 use crate::toolchain::{self, Tools};
@@ -156,9 +156,7 @@ fn fastest(rounds: usize, works: &mut [impl FnMut()]) -> Vec<f64> {
     for _ in 0..rounds {
         for (time, work) in times.iter_mut().zip(&mut *works) {
             work();
-            let start = Instant::now();
-            work();
-            *time = time.min(start.elapsed().as_secs_f64());
+            *time = time.min(seconds(work));
         }
     }
     times
