@@ -31,4 +31,12 @@ impl Losses {
             },
         })
     }
+
+    /// The errors; torque and angle of the limit cycle alone, and of that with the encoder.
+    pub fn figures(&self) -> [Option<f64>; 6] {
+        let &Self { error, error_elsewhere, alone, with_encoder } = self;
+        let [torque, angle] =
+            [with_encoder.map(|cycle| cycle.torque), with_encoder.map(|cycle| cycle.angle)];
+        [Some(error), error_elsewhere, Some(alone.torque), Some(alone.angle), torque, angle]
+    }
 }

@@ -12,7 +12,7 @@ use crate::emulator::Client;
 use crate::hand::HandTrajectory;
 use crate::program::{self, Program};
 use crate::studies::error::StudyError;
-use crate::studies::number_format::{FormatProblem, HALF_A_TURN, Losses, Motion, cost};
+use crate::studies::number_format::{Cost, FormatProblem, HALF_A_TURN, Losses, Motion, cost};
 
 /// The comparison.
 pub static COMPARISON: Comparison = Comparison {
@@ -102,20 +102,11 @@ fn row(
     board: &mut Client,
     arithmetic: Arithmetic,
 ) -> Result<Method, StudyError> {
-    let cost = cost(board, motion, arithmetic)?;
-    let Losses { error, error_elsewhere, alone, with_encoder } = Losses::of(motion, arithmetic)?;
-    let values = [
-        Some(cost.most.into()),
-        Some(error),
-        error_elsewhere,
-        Some(alone.torque),
-        Some(alone.angle),
-        Some(cost.mean),
-        with_encoder.map(|cycle| cycle.torque),
-        with_encoder.map(|cycle| cycle.angle),
-    ];
+    let Cost { most, mean } = cost(board, motion, arithmetic)?;
+    let [drawn @ .., torque, angle] = Losses::of(motion, arithmetic)?.figures();
+    let values = [&[Some(most.into())], &drawn[..], &[Some(mean), torque, angle]].concat();
     let method = Method::new(case.name, family(arithmetic), arithmetic.name(), &[]);
-    Ok(Method { values: values.to_vec(), ..method })
+    Ok(Method { values, ..method })
 }
 
 fn family(arithmetic: Arithmetic) -> &'static str {
@@ -130,7 +121,7 @@ fn family(arithmetic: Arithmetic) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studies::number_format::{LimitCycle, Units, at_rest};
+    use crate::studies::number_format::{Units, at_rest};
 
     /// The kept figures that do not depend on a compiler for the board.
     #[test]
@@ -143,12 +134,7 @@ mod tests {
                 let kept = methods.next().unwrap();
                 let names = (&*kept.case, &*kept.name);
                 assert_eq!(names, (case.name, arithmetic.name()));
-                let Losses { error, error_elsewhere, alone, with_encoder } =
-                    Losses::of(&motion, arithmetic).unwrap();
-                let LimitCycle { torque, angle } = with_encoder.unwrap();
-                let alone = [Some(alone.torque), Some(alone.angle)];
-                let fresh =
-                    [Some(error), error_elsewhere, alone[0], alone[1], Some(torque), Some(angle)];
+                let fresh = Losses::of(&motion, arithmetic).unwrap().figures();
                 let at = [1, 2, 3, 4, 6, 7].map(|column| kept.values[column]);
                 for (kept, fresh) in at.into_iter().zip(fresh) {
                     let (kept, fresh) = (kept.unwrap(), fresh.unwrap());
