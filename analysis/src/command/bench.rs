@@ -317,19 +317,12 @@ fn beside_peers(
 }
 
 /// The cost of a verdict with a lagging torque, and the tightness of this verdict.
-fn lagging(rounds: Rounds) -> [Figure; 4] {
+fn lagging(rounds: Rounds) -> [Figure; 3] {
     let time = bench::middle_verdict_time(&bench::lagging_scenes(), rounds.own);
-    let springs = bench::lagging_springs();
     let at_rest = bench::at_rest::rendered_stiffness(&program::STIFFEST);
-    let same = Pair { ours: at_rest, peers: springs.ours };
+    let same = Pair { ours: at_rest, peers: bench::lagging_spring() };
     [
         Figure::within("verdict with delay and lag, degrees 0 to 8, median", time, &LAGGING),
-        Figure::beside(
-            "certified spring at 1 kHz, 5 us, current loop of 3 kHz",
-            springs,
-            "N m/rad",
-            "latched, lag as a whole sample",
-        ),
         Figure::within(
             "certified spring at h = 0.01 T: index allowed",
             bench::spring_with_jitter(),
@@ -339,7 +332,7 @@ fn lagging(rounds: Rounds) -> [Figure; 4] {
             "undelayed_spring: stiffness at rest in closed loop, same latency",
             same,
             "N m/rad",
-            "the certified spring above",
+            "the certified spring",
         ),
     ]
 }

@@ -16,7 +16,7 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
-use self::figure::{Pair, median, seconds};
+use self::figure::{median, seconds};
 use crate::latency_limits::{lag_of, largest_spring};
 use crate::stability_map::{Family, Map, MapError};
 use crate::studies::failures::setting::{PADDLE, PERIOD, rational, rigid};
@@ -109,12 +109,10 @@ pub fn middle_verdict_time(scenes: &[Scene], rounds: usize) -> f64 {
 }
 
 /// Largest certified stiffness in N m/rad of an undelayed spring without coupling, at 1 kHz, for a device of
-/// 0.022 N m s/rad, with a torque 5 us after its count and a current loop of 3 kHz; and the same with latched
-/// torques and the lag counted as a whole sample.
-pub fn lagging_springs() -> Pair {
+/// 0.022 N m s/rad, with a torque 5 us after its count and a current loop of 3 kHz.
+pub fn lagging_spring() -> f64 {
     let early = Latency::delayed(5e-6).with_actuator_lag(lag_of(3e3));
-    let largest = |latency, delay| largest_spring(&PADDLE, PERIOD, latency, delay);
-    Pair { ours: largest(early, 0), peers: largest(Latency::NONE, 2) }
+    largest_spring(&PADDLE, PERIOD, early, 0)
 }
 
 /// The part of the device's passivity that certified springs may need behind the matched coupling, where
