@@ -73,7 +73,7 @@ pub fn begin(text: &str, _: &mut Vec<f64>) -> PageResult {
         number
     };
     let regions = Region::ALL.map(
-        |region| json!({ "name": region.as_str(), "words": words(region, plane.says_stability()) }),
+        |region| json!({ "name": region.as_str(), "words": region.words(plane.says_stability()) }),
     );
     let answer = json!({
         "axes": [axis(0), axis(1)],
@@ -112,15 +112,6 @@ fn axis_of(key: &str) -> Result<Parameter, String> {
 fn number(parameter: Parameter) -> Value {
     let (name, unit) = parameter.name_and_unit();
     json!({ "key": parameter.key(), "name": name, "unit": unit })
-}
-
-/// The name of a region, with or without a statement on stability.
-fn words(region: Region, says_stability: bool) -> &'static str {
-    match region {
-        Region::Rejected if !says_stability => "rejected",
-        Region::Undecided if !says_stability => "undecided",
-        _ => region.words(),
-    }
 }
 
 /// Further keys with values that another member of the map's scenes must have.

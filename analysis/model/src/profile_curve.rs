@@ -192,30 +192,6 @@ fn certified_rise(scene: &Scene, profile: &Profile, rise: f64, line: f64) -> Opt
     }
 }
 
-/// The largest torque in N m of a profile for each number of repetitions in a turn.
-#[derive(Clone, Debug, PartialEq)]
-pub struct DetentLimits {
-    /// Delay in samples.
-    pub delay: usize,
-    /// Number of repetitions, and torque.
-    pub points: Vec<(f64, f64)>,
-}
-
-impl DetentLimits {
-    /// For a scene with another delay, for these numbers of repetitions.
-    pub fn of(scene: &Scene, delay: usize, counts: impl Iterator<Item = u32>) -> Self {
-        let late = Quantity::Delay.set(scene, delay as f64).unwrap_or(*scene);
-        let point = |count: u32| {
-            let scene = Quantity::Count.set(&late, f64::from(count))?;
-            match largest(&scene, Quantity::Torque, &Terms::KEPT) {
-                DesignLimit::Limit(torque, _) => Some((f64::from(count), torque)),
-                _ => None,
-            }
-        };
-        Self { delay, points: counts.filter_map(point).collect() }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -257,18 +233,5 @@ mod tests {
         let beyond = 1.5 * 0.05 / 15.0;
         assert!((curve.points[POINTS - 1][0] - 1.0 - beyond).abs() < 1e-6);
         assert!((curve.points[0][0] + 1.0 + beyond).abs() < 1e-6);
-    }
-
-    #[test]
-    fn more_repetitions_leave_less_torque() {
-        let scene = file_on_paddle(DETENTS).scene;
-        for (delay, slope) in [(1, 44.0), (2, 44.0 / 3.0)] {
-            let limits = DetentLimits::of(&scene, delay, [1, 6, 48].into_iter());
-            for (count, torque) in &limits.points {
-                let expected = slope * TAU / (4.0 * count);
-                assert!((torque / expected - 1.0).abs() < 1e-3, "{count}: {torque} {expected}");
-            }
-            assert_eq!(limits.points.len(), 3);
-        }
     }
 }

@@ -1,4 +1,4 @@
-//! The map of walls over stiffness and damping.
+//! The map of walls over stiffness and damping, and of other scenes over two numbers.
 
 use super::cell_polygons::polygons;
 use super::palette::REGIONS;
@@ -15,9 +15,13 @@ const UNDAMPED: Stroke = Stroke::solid(1);
 #[derive(Clone, Debug, PartialEq)]
 pub struct Overlay {
     pub title: String,
+    /// The names of both numbers with their units.
+    pub labels: [&'static str; 2],
+    /// Whether the regions say whether a scene is stable.
+    pub says_stability: bool,
     /// The border by a closed form, if there is one.
     pub border: Option<Border>,
-    /// Stiffness and damping of the scene itself.
+    /// Both numbers of the scene itself.
     pub scene: (f64, f64),
 }
 
@@ -41,15 +45,16 @@ fn hatching(region: Region) -> Option<Fill> {
 }
 
 /// The regions of the legend, the best first; rare ones only if present.
-fn named(map: &Map) -> Vec<Region> {
-    let is_named = |region: &Region| hatching(*region).is_none() || map.share(*region) > 0.0;
+fn named(map: &Map, overlay: &Overlay) -> Vec<Region> {
+    let is_usual = |region: Region| overlay.says_stability && hatching(region).is_none();
+    let is_named = |region: &Region| is_usual(*region) || map.share(*region) > 0.0;
     Region::ALL.into_iter().rev().filter(is_named).collect()
 }
 
 /// Draws a map: the regions in greys, the border of the closed form as a broken line, the scene as a cross.
 pub fn map(map: &Map, overlay: &Overlay) -> Result<Picture, ChartError> {
-    let x = (Axis::linear(map.stiffness.clone()), "stiffness (N m/rad)");
-    let y = (Axis::linear(map.damping.clone()), "damping (N m s/rad)");
+    let [x, y] = overlay.labels;
+    let (x, y) = ((Axis::linear(map.x.clone()), x), (Axis::linear(map.y.clone()), y));
     let is_seen = x.0.holds(overlay.scene.0) && y.0.holds(overlay.scene.1);
     let legends = vec![Legend::new(2, legend(map, overlay, is_seen))];
     Page { title: &overlay.title, width: WIDTH, heights: &[HEIGHT], legends }.draw(|areas| {
@@ -71,7 +76,7 @@ fn regions(panel: &Panel<'_, '_>, map: &Map) -> Drawn<()> {
         range.start + (range.end - range.start) * (index as f64 / of as f64)
     };
     let corner = |&(column, row): &(usize, usize)| {
-        (along(&map.stiffness, column, map.columns), along(&map.damping, row, map.rows))
+        (along(&map.x, column, map.columns), along(&map.y, row, map.rows))
     };
     // Each region together with all better ones, the better ones on top.
     for region in Region::ALL {
@@ -108,10 +113,10 @@ fn legend(map: &Map, overlay: &Overlay, is_seen: bool) -> Vec<(Sample, String)> 
     let region = |region: Region| {
         let share = crate::quantity::significant(100.0 * map.share(region), 3);
         let fill = hatching(region).unwrap_or(Fill::Solid(grey(region)));
-        (Sample::Region(fill), format!("{} ({share} %)", region.words()))
+        (Sample::Region(fill), format!("{} ({share} %)", region.words(overlay.says_stability)))
     };
     let border = overlay.border.as_ref();
     let border = border.map(|border| (Sample::Line(BORDER), border.name.to_owned()));
-    let regions = named(map).into_iter().map(region);
+    let regions = named(map, overlay).into_iter().map(region);
     regions.chain(border).chain([Legend::scene(is_seen, "the scene")]).collect()
 }

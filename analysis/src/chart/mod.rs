@@ -7,7 +7,6 @@ pub mod bode;
 pub mod budget;
 pub mod cell_polygons;
 pub mod data;
-pub mod detents;
 mod error;
 pub mod failures;
 mod frame;

@@ -78,8 +78,8 @@ pub enum CommandError {
     )]
     NoProfile { scene: String },
     #[error(
-        "{scene}: a map shows torque and repetitions in a turn of a torque profile, but no torque of this \
-         one certifies, or it does not repeat"
+        "{scene}: a map shows torque and repetitions in a turn of a torque profile, but this one does not \
+         repeat, or not in this range"
     )]
     NoDetents { scene: String },
     #[error(

@@ -82,9 +82,9 @@ pub fn closed_form_border(family: &Family, map: &Map) -> Option<Border> {
     let formula = Formula::of(family.scene())?;
     let at = |index: usize| {
         let part = index as f64 / (POINTS - 1) as f64;
-        let damping = map.damping.start + part * (map.damping.end - map.damping.start);
+        let damping = map.y.start + part * (map.y.end - map.y.start);
         let spare = |stiffness: f64| formula.spare(&family.member(stiffness, damping));
-        let (mut low, mut high) = (map.stiffness.start.max(f64::MIN_POSITIVE), map.stiffness.end);
+        let (mut low, mut high) = (map.x.start.max(f64::MIN_POSITIVE), map.x.end);
         if spare(low)? <= 0.0 || spare(high)? > 0.0 {
             return None;
         }

@@ -20,6 +20,7 @@ use crate::file::SceneFile;
 use crate::limits::{Limit, largest_stiffness};
 use crate::simulation::plant::Plant;
 use crate::simulation::{Experiment, Integration, SimulationError};
+use plane::Plane;
 use plant::SampledPlant;
 
 words! {
@@ -43,9 +44,11 @@ words! {
 }
 
 impl Region {
-    /// In words, for a legend.
-    pub const fn words(self) -> &'static str {
+    /// In words, for a legend; not every map says whether a scene is stable.
+    pub const fn words(self, says_stability: bool) -> &'static str {
         match self {
+            Self::Undecided if !says_stability => "undecided",
+            Self::Rejected if !says_stability => "rejected",
             Self::Paper => "certified by the paper's rule",
             Self::Exact => "certified by the exact rule only",
             Self::Undecided => "undecided, stable with no hand",
@@ -235,13 +238,13 @@ fn verdict(scene: &Scene, kept: Option<&Kept>) -> Region {
 /// A grid of scenes, judged.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Map {
-    /// From the lowest to the highest stiffness, in N m/rad.
-    pub stiffness: Range<f64>,
-    /// From the lowest to the highest damping, in N m s/rad.
-    pub damping: Range<f64>,
-    /// Cells along the stiffness.
+    /// From the lowest to the highest number to the right: of walls, the stiffness in N m/rad.
+    pub x: Range<f64>,
+    /// The same upwards: of walls, the damping in N m s/rad.
+    pub y: Range<f64>,
+    /// Cells to the right.
     pub columns: usize,
-    /// Cells along the damping.
+    /// Cells upwards.
     pub rows: usize,
     regions: Vec<Region>,
 }
@@ -256,15 +259,39 @@ impl Map {
         side: usize,
         progress: impl Fn() + Sync,
     ) -> Self {
+        let of_row = |damping: f64| move |stiffness: f64| family.region(stiffness, damping);
+        Self::judged([stiffness, damping], [side, side], progress, of_row)
+    }
+
+    /// The same of a plane.
+    pub fn of_plane(
+        plane: &Plane,
+        ranges: [Range<f64>; 2],
+        cells: [usize; 2],
+        progress: impl Fn() + Sync,
+    ) -> Self {
+        let of_row = |y: f64| {
+            let row = plane.row(y);
+            move |x: f64| row.region(x)
+        };
+        Self::judged(ranges, cells, progress, of_row)
+    }
+
+    fn judged<R: Fn(f64) -> Region>(
+        [x, y]: [Range<f64>; 2],
+        [columns, rows]: [usize; 2],
+        progress: impl Fn() + Sync,
+        of_row: impl Fn(f64) -> R + Sync,
+    ) -> Self {
         let row = |row: usize| {
-            let damping = middle(&damping, row, side);
-            let region = |column| family.region(middle(&stiffness, column, side), damping);
-            let regions: Vec<Region> = (0..side).map(region).collect();
+            let of_row = of_row(middle(&y, row, rows));
+            let region = |column| of_row(middle(&x, column, columns));
+            let regions: Vec<Region> = (0..columns).map(region).collect();
             progress();
             regions
         };
-        let regions = (0..side).into_par_iter().flat_map_iter(row).collect();
-        Self { stiffness, damping, columns: side, rows: side, regions }
+        let regions = (0..rows).into_par_iter().flat_map_iter(row).collect();
+        Self { x, y, columns, rows, regions }
     }
 
     /// The verdict on a cell.
@@ -272,13 +299,12 @@ impl Map {
         self.regions[row * self.columns + column]
     }
 
-    /// Each cell, by rising damping and then stiffness: stiffness (N m/rad) and damping
-    /// (N m s/rad) of its middle, and the verdict on it.
+    /// Each cell, row by row: the two numbers of its middle, and the verdict on it.
     pub fn cells(self) -> impl Iterator<Item = (f64, f64, Region)> {
-        let Self { stiffness, damping, columns, rows, regions } = self;
+        let Self { x, y, columns, rows, regions } = self;
         regions.into_iter().enumerate().map(move |(index, region)| {
             let (column, row) = (index % columns, index / columns);
-            (middle(&stiffness, column, columns), middle(&damping, row, rows), region)
+            (middle(&x, column, columns), middle(&y, row, rows), region)
         })
     }
 

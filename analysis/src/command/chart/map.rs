@@ -7,17 +7,16 @@ use clap::Args;
 use haptic_servo::parameter::Parameter;
 
 use super::output::OutputArguments;
-use crate::chart::detents::DetentMap;
 use crate::chart::map::Overlay;
 use crate::chart::{self, Chart, Data};
 use crate::command::shared_arguments::SceneArgument;
 use crate::command::status::CommandError;
 use crate::command::value_parsers::range;
 use crate::file::SceneFile;
-use crate::profile_curve::DetentLimits;
 use crate::progress;
 use crate::quantity::{shortened, significant};
 use crate::stability_map::border::closed_form_border;
+use crate::stability_map::plane::Plane;
 use crate::stability_map::{Family, Map, MapError, Region};
 
 #[derive(Debug, Args)]
@@ -46,76 +45,61 @@ pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
     let file = arguments.scene.load()?;
     let side = (arguments.points as f64).sqrt().ceil() as usize;
     let ranges = (arguments.stiffness.clone(), arguments.damping.clone());
-    match file.scene.environment.profile() {
-        Some(_) => of_profile(&file, ranges),
-        None => of_file(&file, ranges, side),
-    }
+    let (map, overlay, header) = match file.scene.environment.profile() {
+        Some(_) => of_profile(&file, ranges, side)?,
+        None => of_walls(&file, ranges, side)?,
+    };
+    let picture = chart::map::map(&map, &overlay)?;
+    let row = |(x, y, region): (f64, f64, Region)| vec![x.into(), y.into(), region.as_str().into()];
+    Ok(Chart { picture, data: Data::new(header, map.cells().map(row)) })
 }
 
-/// A range of stiffness and a range of damping, if given.
+/// The ranges of both axes, if given.
 type Ranges = (Option<Range<f64>>, Option<Range<f64>>);
+/// A map with the names of its columns.
+type Drawn = (Map, Overlay, &'static [&'static str; 3]);
 
-/// Delays of a map of torque profiles, in samples.
-const DELAYS: std::ops::RangeInclusive<usize> = 0..=2;
-/// Largest number of repetition numbers in a map.
-const COUNTS: u32 = 512;
-
-/// The map of a scene file's torque profile.
-pub fn of_profile(file: &SceneFile, (counts, torques): Ranges) -> Result<Chart, CommandError> {
-    let scene = &file.scene;
+/// The map of a scene file's torque profile: a column for each number of repetitions, and at most `side`
+/// columns.
+fn of_profile(
+    file: &SceneFile,
+    (counts, torques): Ranges,
+    side: usize,
+) -> Result<Drawn, CommandError> {
+    const HEADER: &[&str; 3] = &["repetitions in a turn", "torque (N m)", "region"];
     let no_detents = || CommandError::NoDetents { scene: file.name.clone() };
-    let number = |parameter| scene.environment.get(parameter).ok_or_else(no_detents);
-    let (count, torque) = (number(Parameter::Count)?, number(Parameter::ProfileTorque)?);
-    let counts = counts.unwrap_or(0.0..(2.5 * count).max(8.0).ceil());
-    let first = counts.start.max(1.0).ceil() as u32;
-    let last = counts.end.max(1.0) as u32;
-    let step = (last.saturating_sub(first) / COUNTS).max(1);
-    let bar = progress::bar(1 + *DELAYS.end() as u64, "judging profiles");
-    let limits = |delay: usize| {
-        let limits = DetentLimits::of(scene, delay, (first..=last).step_by(step as usize));
-        bar.inc(1);
-        limits
-    };
-    let delay = scene.environment.delay();
-    let own = limits(delay);
-    let others = DELAYS.filter(|&other| other != delay).map(limits).collect();
-    bar.finish_and_clear();
-    if own.points.len() < 2 {
+    if !Plane::choice(&file.scene).contains(&Parameter::Count) {
         return Err(no_detents());
     }
-    // About twice the largest certified torque with the scene's number of repetitions.
-    let near = own.points.iter().min_by(|a, b| (a.0 - count).abs().total_cmp(&(b.0 - count).abs()));
-    let usual = 2.0 * near.map_or(torque, |point| point.1.max(torque));
-    let torques = torques.unwrap_or(0.0..usual);
+    let plane = Plane::of(file, [Parameter::Count, Parameter::ProfileTorque])?;
+    let [usual_counts, usual_torques] = plane.usual_ranges();
+    let (counts, torques) = (counts.unwrap_or(usual_counts), torques.unwrap_or(usual_torques));
+    let (first, last) = (counts.start.max(1.0).ceil(), counts.end.floor());
+    let counts = first - 0.5..last + 0.5;
     if ![&counts, &torques].into_iter().all(chart::is_range) {
         return Err(no_detents());
     }
-    let period = significant(1e3 * scene.timing.period, 4);
-    let map = DetentMap {
-        title: format!("{}: torque profiles, T = {period} ms", shortened(&file.name, 40)),
-        own,
-        others,
-        scene: (count, torque),
-        counts,
-        torques,
+    let columns = ((last - first) as usize).min(side - 1) + 1;
+    let bar = progress::bar(side as u64, "judging profiles");
+    let map = Map::of_plane(&plane, [counts, torques], [columns, side], || bar.inc(1));
+    bar.finish_and_clear();
+    let overlay = Overlay {
+        title: title(file, "torque profiles"),
+        labels: [HEADER[0], HEADER[1]],
+        says_stability: plane.says_stability(),
+        border: None,
+        scene: plane.own().into(),
     };
-    let picture = chart::detents::detents(&map)?;
-    let all = std::iter::once(map.own).chain(map.others);
-    let rows = all.flat_map(|DetentLimits { delay, points }| {
-        points
-            .into_iter()
-            .map(move |(count, torque)| vec![(delay as f64).into(), count.into(), torque.into()])
-    });
-    let header = &["delay (samples)", "repetitions in a turn", "largest torque (N m)"];
-    Ok(Chart { picture, data: Data::new(header, rows) })
+    Ok((map, overlay, HEADER))
 }
 
 /// The map of a scene file's walls, of `side` times `side` cells.
-pub fn of_file(
+fn of_walls(
     file: &SceneFile,
     (stiffness, damping): Ranges,
     side: usize,
-) -> Result<Chart, CommandError> {
+) -> Result<Drawn, CommandError> {
+    const HEADER: &[&str; 3] = &["stiffness (N m/rad)", "damping (N m s/rad)", "region"];
     let family = Family::of(file)?;
     let usual = family.usual_ranges();
     let (stiffness, damping) = (stiffness.unwrap_or(usual.0), damping.unwrap_or(usual.1));
@@ -127,14 +111,17 @@ pub fn of_file(
     bar.finish_and_clear();
     let wall = file.scene.environment.wall();
     let delay = wall.map_or(0, |wall| wall.delay);
-    let period = significant(1e3 * file.scene.timing.period, 4);
     let overlay = Overlay {
-        title: format!("{}: walls of delay {delay}, T = {period} ms", shortened(&file.name, 40)),
+        title: title(file, &format!("walls of delay {delay}")),
+        labels: [HEADER[0], HEADER[1]],
+        says_stability: true,
         border: closed_form_border(&family, &map),
         scene: wall.map_or((0.0, 0.0), |wall| (wall.stiffness, wall.damping())),
     };
-    let picture = chart::map::map(&map, &overlay)?;
-    let row = |(k, b, region): (f64, f64, Region)| vec![k.into(), b.into(), region.as_str().into()];
-    let header = &["stiffness (N m/rad)", "damping (N m s/rad)", "region"];
-    Ok(Chart { picture, data: Data::new(header, map.cells().map(row)) })
+    Ok((map, overlay, HEADER))
+}
+
+fn title(file: &SceneFile, what: &str) -> String {
+    let period = significant(1e3 * file.scene.timing.period, 4);
+    format!("{}: {what}, T = {period} ms", shortened(&file.name, 40))
 }
