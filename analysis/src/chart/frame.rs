@@ -7,11 +7,9 @@ pub fn whole(place: &Place) -> (i32, i32) {
     (place.0.round() as i32, place.1.round() as i32)
 }
 
-/// A rectangle; down is positive, as in the drawing.
+/// A rectangle from the upper left corner on; down is positive, as in the drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
-    pub left: f64,
-    pub top: f64,
     pub right: f64,
     pub bottom: f64,
 }
@@ -19,22 +17,22 @@ pub struct Frame {
 impl Frame {
     /// Whether a place is inside or on the border; never true of NaN.
     pub fn contains(&self, (x, y): Place) -> bool {
-        self.left <= x && x <= self.right && self.top <= y && y <= self.bottom
+        (0.0..=self.right).contains(&x) && (0.0..=self.bottom).contains(&y)
     }
 
     /// The nearest place inside or on the border.
     pub fn nearest(&self, (x, y): Place) -> Place {
-        (x.clamp(self.left, self.right), y.clamp(self.top, self.bottom))
+        (x.clamp(0.0, self.right), y.clamp(0.0, self.bottom))
     }
 
     /// The point in which the line from an inner to an outer place crosses the border.
     pub fn crossing(&self, inner: Place, outer: Place) -> Place {
-        let part = |from: f64, to: f64, low: f64, high: f64| {
-            let bound = if to > from { high } else { low };
+        let part = |from: f64, to: f64, high: f64| {
+            let bound = if to > from { high } else { 0.0 };
             if to == from { f64::INFINITY } else { (bound - from) / (to - from) }
         };
-        let t = part(inner.0, outer.0, self.left, self.right)
-            .min(part(inner.1, outer.1, self.top, self.bottom))
+        let t = part(inner.0, outer.0, self.right)
+            .min(part(inner.1, outer.1, self.bottom))
             .clamp(0.0, 1.0);
         let x = inner.0 + t * (outer.0 - inner.0);
         let y = inner.1 + t * (outer.1 - inner.1);

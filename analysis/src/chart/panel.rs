@@ -70,8 +70,7 @@ impl<'a, 'b> Panel<'a, 'b> {
         let chart = chart.build_cartesian_2d(axes.x.clone(), axes.y.clone())?;
         let area = chart.plotting_area().strip_coord_spec();
         let (width, height) = area.dim_in_pixel();
-        let frame =
-            Frame { left: 0.0, top: 0.0, right: f64::from(width), bottom: f64::from(height) };
+        let frame = Frame { right: f64::from(width), bottom: f64::from(height) };
         Ok(Self { chart, axes, area, frame })
     }
 

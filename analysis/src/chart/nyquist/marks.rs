@@ -25,9 +25,8 @@ pub(super) fn draw(
     scenes: &[NyquistScene],
     minima: &[((f64, f64), String)],
 ) -> Drawn<()> {
-    let frame = panel.frame;
-    let corners = [(frame.left, frame.top), (frame.right, frame.bottom)].map(|place| whole(&place));
-    let mut labels = Labels::within(Block::new(corners[0], corners[1]));
+    let end = whole(&(panel.frame.right, panel.frame.bottom));
+    let mut labels = Labels::within(Block::new((0, 0), end));
     keep_clear_of_lines(panel, scenes, &mut labels);
     let judged = || scenes.iter().flat_map(judged_curves);
     for (scene, curve) in judged() {
@@ -41,7 +40,7 @@ pub(super) fn draw(
         for (hertz, place) in frequencies(panel, scene, curve) {
             let far =
                 |(other, _): &(Place, _)| (other.0 - place.0).hypot(other.1 - place.1) >= APART;
-            if frame.contains(place) && marked.iter().all(far) {
+            if panel.frame.contains(place) && marked.iter().all(far) {
                 Mark::DOT.draw(&panel.area, whole(&place))?;
                 marked.push((place, format!("{} Hz", significant(hertz, 3))));
             }
@@ -69,12 +68,12 @@ fn keep_clear_of_lines(panel: &Panel<'_, '_>, scenes: &[NyquistScene], labels: &
     let upright = limits.map(|value| -value).chain(hairlines).chain([0.0]);
     for x in upright.map(|value| panel.place((value, 0.0)).0) {
         if all.contains((x, 0.0)) {
-            labels.keep_clear_along(whole(&(x, all.top)), whole(&(x, all.bottom)));
+            labels.keep_clear_along(whole(&(x, 0.0)), whole(&(x, all.bottom)));
         }
     }
     let level = panel.place((0.0, 0.0)).1;
     if all.contains((0.0, level)) {
-        labels.keep_clear_along(whole(&(all.left, level)), whole(&(all.right, level)));
+        labels.keep_clear_along(whole(&(0.0, level)), whole(&(all.right, level)));
     }
     for curve in curves() {
         let upper: Vec<_> = curve.values().map(|&value| panel.place(value)).collect();
