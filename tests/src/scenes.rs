@@ -145,8 +145,8 @@ fn sum(coefficients: &[f64]) -> f64 {
     coefficients.iter().sum()
 }
 
-/// Descending coefficients of a monic polynomial with `count` roots, whose radius may depend on how many there are
-/// already. This share of the real ones is negative.
+/// Descending coefficients of a monic polynomial with `count` roots, whose radius may depend on how many there
+/// are already. This share of the real ones is negative.
 pub fn polynomial<R: Rng>(
     rng: &mut R,
     count: usize,

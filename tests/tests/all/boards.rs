@@ -1,5 +1,5 @@
-//! Every program for one board, and one of each kind for the others: it builds, fits, and says which chip it is
-//! for.
+//! Every program for one board, and one of each kind for the others: it builds, fits, and says which chip
+//! it is for.
 
 use std::collections::BTreeSet;
 use std::io::{self, Write};

@@ -1,5 +1,5 @@
-//! More than 2^16 ticks of contact and of free motion: into the wall and out of it, turns that wrap the encoder's
-//! counter, and parameters that are changed while it is felt.
+//! More than 2^16 ticks of contact and of free motion: into the wall and out of it, turns that wrap the
+//! encoder's counter, and parameters that are changed while it is felt.
 
 use std::num::NonZeroU32;
 
