@@ -2,7 +2,7 @@
 
 use num_bigint::BigInt;
 use num_rational::BigRational;
-use num_traits::{One, Zero};
+use num_traits::One;
 
 /// An exact rational number.
 pub type Q = BigRational;
@@ -10,6 +10,14 @@ pub type Q = BigRational;
 /// The rational that a finite `f64` is, bit for bit; `None` for NaN and infinities.
 pub fn of_f64(x: f64) -> Option<Q> {
     BigRational::from_float(x)
+}
+
+/// The same of a number that is known to be finite.
+///
+/// # Panics
+/// If it is not.
+pub fn q(x: f64) -> Q {
+    of_f64(x).expect("a finite number")
 }
 
 /// The rational that a decimal such as `-0.0220` or `1e-9` is; `None` if it is not one.
@@ -32,12 +40,4 @@ pub fn ratio(numerator: i64, denominator: i64) -> Q {
 pub fn power_of_ten(n: i32) -> Q {
     let magnitude = Q::from_integer(BigInt::from(10).pow(n.unsigned_abs()));
     if n < 0 { Q::one() / magnitude } else { magnitude }
-}
-
-/// `x` rounded to `places` decimals: the rational and the `f64` nearest to it, as a person who
-/// types that decimal would get it.
-pub fn rounded(x: f64, places: usize) -> (Q, f64) {
-    let text = format!("{x:.places$}");
-    let exact = of_decimal(&text).unwrap_or_else(Q::zero);
-    (exact, text.parse().unwrap_or(0.0))
 }

@@ -19,6 +19,14 @@ pub mod rules;
 pub mod scenes;
 pub mod vectors;
 
+/// How long a search is by an environment variable, if there is one of this name.
+///
+/// # Panics
+/// If it is not a number.
+pub fn number(name: &str) -> Option<u64> {
+    std::env::var(name).ok().map(|value| value.parse().unwrap_or_else(|e| panic!("{name}: {e}")))
+}
+
 /// The examples of the README are tests, of this package and not of the firmware's: who has that alone
 /// has no README above it.
 #[cfg(doctest)]

@@ -1,6 +1,6 @@
 //! Polynomials with rational coefficients.
 
-use crate::exact::Q;
+use crate::exact::{Q, q};
 use crate::remainders::Chain;
 use num_traits::{One, Zero};
 
@@ -20,6 +20,11 @@ impl Poly {
     /// From descending coefficients.
     pub fn descending(coefficients: &[Q]) -> Self {
         Self::ascending(coefficients.iter().rev().cloned().collect())
+    }
+
+    /// From descending coefficients in `f64`, which are finite.
+    pub fn of(descending: &[f64]) -> Self {
+        Self::ascending(descending.iter().rev().copied().map(q).collect())
     }
 
     /// From ascending whole numbers.

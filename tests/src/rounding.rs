@@ -1,18 +1,15 @@
 //! The controller that a servo really computes, in exact numbers: every coefficient rounded to the
 //! number format by rational arithmetic, and the transfer function put together from these.
 
-use crate::exact::{Q, of_f64};
+use crate::exact::{Q, q};
 use crate::poly::Poly;
 use crate::rules::Exact;
+use crate::scenes::sum_of;
 use haptic_servo::environment::{Canceller, Drag, Parts, Wall};
 use haptic_servo::number::Format;
 use haptic_servo::scene::{Coupling, Scene};
 use num_integer::Integer;
 use num_traits::{One, Signed, Zero};
-
-fn q(x: f64) -> Q {
-    of_f64(x).expect("drawn numbers are finite")
-}
 
 fn power_of_two(n: i32) -> Q {
     let two = Q::from_integer(2.into());
@@ -63,15 +60,11 @@ fn washout(gain: &Q, rate: &Q, format: Format) -> (Poly, Poly) {
     (Poly::integers(&[-1, 1]).scaled(&gain), Poly::ascending(vec![rate - Q::one(), Q::one()]))
 }
 
-fn plus(a: &(Poly, Poly), b: &(Poly, Poly)) -> (Poly, Poly) {
-    (a.0.times(&b.1).plus(&b.0.times(&a.1)), a.1.times(&b.1))
-}
-
 fn wall(wall: &Wall, period: &Q, format: Format) -> (Poly, Poly) {
     let spring = (Poly::ascending(vec![nearest(&q(wall.stiffness), format)]), Poly::integers(&[1]));
     let rate = Q::one() - wall.filter().map_or_else(Q::zero, q);
     let damper = washout(&(q(wall.damping()) / period * &rate), &rate, format);
-    let sum = if wall.damping() == 0.0 { spring } else { plus(&spring, &damper) };
+    let sum = if wall.damping() == 0.0 { spring } else { sum_of(&spring, &damper) };
     (sum.0, sum.1.raised(wall.delay))
 }
 
@@ -114,7 +107,7 @@ pub fn as_it_runs(scene: &Scene, format: Format) -> Option<Exact> {
         beside.as_ref().map(|beside| wall(beside, &period, format)),
         drag.as_ref().map(damper),
     ];
-    let (numerator, denominator) = parts.into_iter().flatten().reduce(|a, b| plus(&a, &b))?;
+    let (numerator, denominator) = parts.into_iter().flatten().reduce(|a, b| sum_of(&a, &b))?;
     // The direct feedthrough is solved with the coupling by a gain that is rounded as well.
     let through = if numerator.degree() < denominator.degree() || numerator.is_zero() {
         Q::zero()

@@ -3,7 +3,7 @@
 //! Every number is a short binary fraction. Its `f64`, its decimal text and its rational are then
 //! the same number, and a disagreement with the reference is never one of input rounding.
 
-use crate::exact::{Q, of_f64};
+use crate::exact::{Q, q};
 use crate::poly::Poly;
 use crate::rules::Exact;
 use haptic_servo::environment::{Canceller, Damper, Drag, Environment, Parts, Rational, Wall};
@@ -30,10 +30,6 @@ pub fn short(x: f64, bits: i32) -> f64 {
 /// A number whose logarithm is uniform between two ends.
 pub fn log_uniform(rng: &mut impl Rng, lo: f64, hi: f64) -> f64 {
     (rng.random_range(lo.ln()..hi.ln())).exp()
-}
-
-fn q(x: f64) -> Q {
-    of_f64(x).expect("drawn numbers are finite")
 }
 
 /// Device, period and coupling, before there is an environment.
@@ -118,7 +114,10 @@ pub struct Poles {
 pub fn rational(rng: &mut impl Rng, poles: Poles) -> ExactScene {
     let frame = Frame::draw(rng);
     let count = rng.random_range(1..=poles.count);
-    let denominator = rounded(&polynomial(rng, count, poles.nearest), 44);
+    let denominator = rounded(
+        &polynomial(rng, count, 0.5, |rng, _| 1.0 - log_uniform(rng, poles.nearest, 1.0)),
+        44,
+    );
     let zeros = rng.random_range(0..=count);
     let mut numerator: Vec<f64> = (0..=zeros).map(|_| rng.random_range(-1.0..1.0)).collect();
     let delay = if rng.random_bool(0.5) { 0 } else { rng.random_range(0..=poles.delay) };
@@ -134,9 +133,8 @@ pub fn rational(rng: &mut impl Rng, poles: Poles) -> ExactScene {
 
 fn data(frame: &Frame, numerator: &[f64], denominator: &[f64], delay: usize) -> ExactScene {
     let rational = Rational::of(numerator, denominator).expect("at most eight poles are drawn");
-    let exact = |c: &[f64]| Poly::descending(&c.iter().copied().map(q).collect::<Vec<Q>>());
     let environment = Environment::Rational(Rational { delay, ..rational });
-    frame.with(environment, (exact(numerator), exact(denominator).raised(delay)))
+    frame.with(environment, (Poly::of(numerator), Poly::of(denominator).raised(delay)))
 }
 
 fn rounded(coefficients: &[f64], bits: i32) -> Vec<f64> {
@@ -147,16 +145,22 @@ fn sum(coefficients: &[f64]) -> f64 {
     coefficients.iter().sum()
 }
 
-/// Descending coefficients of a monic polynomial with `count` roots inside the circle.
-fn polynomial(rng: &mut impl Rng, count: usize, nearest: f64) -> Vec<f64> {
+/// Descending coefficients of a monic polynomial with `count` roots, whose radius may depend on how many there
+/// are already. This share of the real ones is negative.
+pub fn polynomial<R: Rng>(
+    rng: &mut R,
+    count: usize,
+    negative: f64,
+    radius: impl Fn(&mut R, usize) -> f64,
+) -> Vec<f64> {
     let mut product = vec![1.0];
     while product.len() <= count {
-        let radius = 1.0 - log_uniform(rng, nearest, 1.0);
+        let radius = radius(rng, product.len() - 1);
         let pair = product.len() < count && rng.random_bool(0.6);
         let factor = if pair {
             vec![1.0, -2.0 * radius * rng.random_range(0.0..PI).cos(), radius * radius]
         } else {
-            vec![1.0, if rng.random_bool(0.5) { radius } else { -radius }]
+            vec![1.0, if rng.random_bool(negative) { radius } else { -radius }]
         };
         product = multiply(&product, &factor);
     }
@@ -218,7 +222,7 @@ fn drag_fraction(drag: &Drag, period: f64) -> (Poly, Poly) {
 }
 
 /// Sum of two fractions.
-fn sum_of(a: &(Poly, Poly), b: &(Poly, Poly)) -> (Poly, Poly) {
+pub fn sum_of(a: &(Poly, Poly), b: &(Poly, Poly)) -> (Poly, Poly) {
     (a.0.times(&b.1).plus(&b.0.times(&a.1)), a.1.times(&b.1))
 }
 

@@ -25,12 +25,12 @@ pub enum TickTiming {
 }
 
 /// The ticks that come, over and over.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Pattern {
     /// All in time.
     AllOnTime,
-    /// The first so many of these, again and again.
-    Periodic([TickTiming; Pattern::LONGEST], usize),
+    /// These, again and again.
+    Periodic(Vec<TickTiming>),
     /// By chance, each with a probability, and never more in a row than so many.
     Random {
         /// Where the numbers begin.
@@ -50,7 +50,7 @@ impl Pattern {
 
     /// Whether it has delayed ticks.
     pub fn delays(&self) -> bool {
-        matches!(self, Self::Periodic(ticks, length) if ticks[..*length].contains(&TickTiming::Delayed))
+        matches!(self, Self::Periodic(ticks) if ticks.contains(&TickTiming::Delayed))
     }
 
     /// A plan that misses at most `most` updates in a row, if that is not zero; with late codes where they
@@ -69,7 +69,7 @@ impl Pattern {
             return Self::Random { seed: rng.random::<u64>() | 1, missed, late, most };
         }
         let length = rng.random_range(2..=Self::LONGEST);
-        let mut ticks = [TickTiming::OnTime; Self::LONGEST];
+        let mut ticks = vec![TickTiming::OnTime; length];
         let mut in_a_row = 0;
         let kind = match (only_delays, latched) {
             (true, _) => 3,
@@ -91,12 +91,12 @@ impl Pattern {
                 };
             }
         }
-        Self::Periodic(ticks, length)
+        Self::Periodic(ticks)
     }
 }
 
 /// How the times of torques and counts deviate from tick to tick.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Jitter {
     /// Those of the torques.
     pub torques: Option<Signs>,
@@ -105,10 +105,10 @@ pub struct Jitter {
 }
 
 /// Deviations in units of the largest one.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Signs {
-    /// The first so many of these, again and again.
-    Periodic([i8; Signs::LONGEST], usize),
+    /// These, again and again.
+    Periodic(Vec<i8>),
     /// By chance.
     Random {
         /// Where the numbers begin.
@@ -117,33 +117,31 @@ pub enum Signs {
 }
 
 impl Signs {
-    /// Longest periodic pattern.
-    pub const LONGEST: usize = 4;
-
     fn draw(rng: &mut impl Rng) -> Self {
         if rng.random_bool(0.15) {
             return Self::Random { seed: rng.random::<u64>() | 1 };
         }
         let length = [2, 2, 3, 3, 4][rng.random_range(0..5)];
-        let mut signs = [1; Self::LONGEST];
+        let mut signs = vec![1; length];
         loop {
-            for sign in &mut signs[..length] {
+            for sign in &mut signs {
                 *sign = if rng.random_bool(0.5) { 1 } else { -1 };
             }
             // A constant deviation is a delay, which is the mildest pattern; now and then it is drawn.
-            if signs[..length].iter().any(|sign| *sign != signs[0]) || rng.random_bool(0.1) {
-                return Self::Periodic(signs, length);
+            if signs.iter().any(|sign| *sign != signs[0]) || rng.random_bool(0.1) {
+                return Self::Periodic(signs);
             }
         }
     }
 
     /// Signs of the counts beside these of the torques: often the same, so that ticks are long and short.
-    fn beside(self, rng: &mut impl Rng) -> Self {
+    fn beside(&self, rng: &mut impl Rng) -> Self {
         match (self, rng.random_range(0..5)) {
-            (signs, 0..=2) => signs,
-            (Self::Periodic(signs, length), 3) => Self::Periodic(signs.map(|sign| -sign), length),
-            (Self::Periodic(_, length), _) => {
-                Self::Periodic([0; 4].map(|_| if rng.random_bool(0.5) { 1 } else { -1 }), length)
+            (signs, 0..=2) => signs.clone(),
+            (Self::Periodic(signs), 3) => Self::Periodic(signs.iter().map(|sign| -sign).collect()),
+            (Self::Periodic(signs), _) => {
+                let others = [0; 4].map(|_| if rng.random_bool(0.5) { 1 } else { -1 });
+                Self::Periodic(others[..signs.len()].to_vec())
             }
             _ => Self::draw(rng),
         }
@@ -161,7 +159,7 @@ impl Jitter {
         }
         let signs = Signs::draw(rng);
         // An amplifier that is updated takes a torque over at an update, whatever its jitter.
-        let torques = (updates == 0).then_some(signs);
+        let torques = (updates == 0).then(|| signs.clone());
         if both {
             return Self { torques, counts: Some(signs.beside(rng)) };
         }

@@ -162,16 +162,11 @@ fn next(seed: &mut u64) -> u64 {
     seed.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 32
 }
 
-/// The first so many of these, again and again.
-fn repeated<T: Copy, const N: usize>(all: [T; N], length: usize) -> impl Iterator<Item = T> {
-    (0..length).cycle().map(move |at| all[at])
-}
-
 /// What happens to the ticks, one after the other.
 fn ticks(pattern: Pattern) -> Box<dyn Iterator<Item = TickTiming>> {
     match pattern {
         Pattern::AllOnTime => Box::new(std::iter::repeat(TickTiming::OnTime)),
-        Pattern::Periodic(ticks, length) => Box::new(repeated(ticks, length)),
+        Pattern::Periodic(ticks) => Box::new(ticks.into_iter().cycle()),
         Pattern::Random { mut seed, missed, late, most } => {
             let mut in_a_row = 0;
             Box::new(std::iter::repeat_with(move || {
@@ -196,7 +191,7 @@ fn ticks(pattern: Pattern) -> Box<dyn Iterator<Item = TickTiming>> {
 fn shifts(signs: Option<Signs>) -> Box<dyn Iterator<Item = i8>> {
     match signs {
         None => Box::new(std::iter::repeat(0)),
-        Some(Signs::Periodic(signs, length)) => Box::new(repeated(signs, length)),
+        Some(Signs::Periodic(signs)) => Box::new(signs.into_iter().cycle()),
         Some(Signs::Random { mut seed }) => Box::new(std::iter::repeat_with(move || {
             [-1, -1, 1, 1, 0][next(&mut seed) as usize % 5]
         })),
@@ -491,11 +486,11 @@ where
         }
         let window = (plan.periods / 4).max(LOOK);
         let mut rate = Rate { window, before: EnergyBalance::default(), last: -1.0 };
-        let shifts = shifts(plan.jitter.torques).zip(shifts(plan.jitter.counts));
+        let shifts = shifts(plan.jitter.torques.clone()).zip(shifts(plan.jitter.counts.clone()));
         let (mut overdue, mut target) = (None, 0.0);
         let mut next_request = plan.next_request(0);
         for (period, (tick, (shift, count))) in
-            (0..plan.periods).zip(ticks(plan.pattern).zip(shifts))
+            (0..plan.periods).zip(ticks(plan.pattern.clone()).zip(shifts))
         {
             if let Some(on) = overdue.take() {
                 run.motor.powered = on;

@@ -1,6 +1,6 @@
 //! Random scenes of every kind, each taken to just inside acceptance.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 use haptic_servo::certificate::{PassivityProblem, TimingError, assess_in};
 use haptic_servo::encoder::CounterWidth;
@@ -11,7 +11,7 @@ use haptic_servo::number::Format;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use haptic_servo::servo::{Latched, RenderingOptions, Transducers};
 use rand::Rng;
-use tests::scenes::{log_uniform, multiply};
+use tests::scenes::{log_uniform, multiply, polynomial};
 
 use crate::mode::{Actual, draw_latency, has_latency, plain};
 use crate::planted::Planted;
@@ -544,22 +544,10 @@ fn coefficients(descending: &[f64]) -> Coefficients {
 
 fn rational_with(rng: &mut impl Rng, unit: f64, delay: usize, unstable: bool) -> Environment {
     let count = rng.random_range(1..=4);
-    let mut denominator = vec![1.0];
-    while denominator.len() <= count {
-        let outside = unstable && denominator.len() == 1;
-        let radius = if outside {
-            1.0 + log_uniform(rng, 1e-3, 0.5)
-        } else {
-            1.0 - log_uniform(rng, 3e-3, 1.0)
-        };
-        let pair = denominator.len() < count && rng.random_bool(0.6);
-        let factor = if pair {
-            vec![1.0, -2.0 * radius * rng.random_range(0.0..PI).cos(), radius * radius]
-        } else {
-            vec![1.0, if rng.random_bool(0.3) { radius } else { -radius }]
-        };
-        denominator = multiply(&denominator, &factor);
-    }
+    let denominator = polynomial(rng, count, 0.3, |rng, roots| match unstable && roots == 0 {
+        true => 1.0 + log_uniform(rng, 1e-3, 0.5),
+        false => 1.0 - log_uniform(rng, 3e-3, 1.0),
+    });
     let count = denominator.len() - 1;
     let zeros = rng.random_range(0..=count);
     let mut numerator: Vec<f64> = (0..=zeros).map(|_| rng.random_range(-1.0..1.0)).collect();

@@ -151,76 +151,55 @@ impl std::fmt::Display for Found {
     }
 }
 
-/// Something that is done with a booted servo in whatever number format and mode.
-pub trait Task {
-    /// What comes of it.
-    type Result;
-    /// Does it.
-    fn with<N: Number, M: OutputMode>(
-        self,
-        machine: Machine<N, M>,
-        normalized: NormalizedScene,
-    ) -> Self::Result
-    where
-        Environment: Tunable<N> + SupportsTiming<M>;
-}
-
 /// Why there is nothing to search.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unjudged {
+enum Unjudged {
     /// A board refuses the scene.
     Refused,
     /// No bound is known on the torque error of encoder, numbers and DAC.
     Unbounded,
 }
 
-/// Boots a drawn scene as a board does, and does something with it.
-///
-/// # Errors
-/// The reason.
-pub fn booted<T: Task>(drawn: &RandomScene, task: T) -> Result<T::Result, Unjudged> {
-    match (drawn.format, drawn.mode) {
-        (Numbers::F32, Mode::AtPhase(phase)) => at_phase::<f32, T>(drawn, phase, task),
-        (Numbers::Q24, Mode::AtPhase(phase)) => at_phase::<I8F24, T>(drawn, phase, task),
+/// Boots the drawn scene of a search as a board does, and searches.
+fn booted(climb: Climb<'_>) -> Result<Found, Unjudged> {
+    match (climb.drawn.format, climb.drawn.mode) {
+        (Numbers::F32, Mode::AtPhase(phase)) => at_phase::<f32>(climb, phase),
+        (Numbers::Q24, Mode::AtPhase(phase)) => at_phase::<I8F24>(climb, phase),
         (_, Mode::AtPhase(_)) => Err(Unjudged::Refused),
-        (Numbers::F32, Mode::Latched) => on_board::<f32, Latched, T>(drawn, task),
-        (Numbers::F32, Mode::Simultaneous) => on_board::<f32, Simultaneous, T>(drawn, task),
-        (Numbers::F64, Mode::Latched) => on_board::<f64, Latched, T>(drawn, task),
-        (Numbers::F64, Mode::Simultaneous) => on_board::<f64, Simultaneous, T>(drawn, task),
-        (Numbers::Q24, Mode::Latched) => on_board::<I8F24, Latched, T>(drawn, task),
-        (Numbers::Q24, Mode::Simultaneous) => on_board::<I8F24, Simultaneous, T>(drawn, task),
-        (Numbers::Q20, Mode::Latched) => on_board::<I12F20, Latched, T>(drawn, task),
-        (Numbers::Q20, Mode::Simultaneous) => on_board::<I12F20, Simultaneous, T>(drawn, task),
-        (Numbers::F32, Mode::Bare) => alone::<f32, T>(drawn, task),
-        (Numbers::F64, Mode::Bare) => alone::<f64, T>(drawn, task),
-        (Numbers::Q24, Mode::Bare) => alone::<I8F24, T>(drawn, task),
-        (Numbers::Q20, Mode::Bare) => alone::<I12F20, T>(drawn, task),
+        (Numbers::F32, Mode::Latched) => on_board::<f32, Latched>(climb),
+        (Numbers::F32, Mode::Simultaneous) => on_board::<f32, Simultaneous>(climb),
+        (Numbers::F64, Mode::Latched) => on_board::<f64, Latched>(climb),
+        (Numbers::F64, Mode::Simultaneous) => on_board::<f64, Simultaneous>(climb),
+        (Numbers::Q24, Mode::Latched) => on_board::<I8F24, Latched>(climb),
+        (Numbers::Q24, Mode::Simultaneous) => on_board::<I8F24, Simultaneous>(climb),
+        (Numbers::Q20, Mode::Latched) => on_board::<I12F20, Latched>(climb),
+        (Numbers::Q20, Mode::Simultaneous) => on_board::<I12F20, Simultaneous>(climb),
+        (Numbers::F32, Mode::Bare) => alone::<f32>(climb),
+        (Numbers::F64, Mode::Bare) => alone::<f64>(climb),
+        (Numbers::Q24, Mode::Bare) => alone::<I8F24>(climb),
+        (Numbers::Q20, Mode::Bare) => alone::<I12F20>(climb),
     }
 }
 
 /// A board's type has its phase.
-fn at_phase<N: Number, T: Task>(
-    drawn: &RandomScene,
-    phase: u32,
-    task: T,
-) -> Result<T::Result, Unjudged>
+fn at_phase<N: Number>(climb: Climb<'_>, phase: u32) -> Result<Found, Unjudged>
 where
     Environment: Tunable<N>,
 {
     const PHASES: [u32; 3] = Mode::PHASES;
     match phase {
-        phase if phase == PHASES[0] => on_board::<N, AtPhase<{ PHASES[0] }>, T>(drawn, task),
-        phase if phase == PHASES[1] => on_board::<N, AtPhase<{ PHASES[1] }>, T>(drawn, task),
-        phase if phase == PHASES[2] => on_board::<N, AtPhase<{ PHASES[2] }>, T>(drawn, task),
+        phase if phase == PHASES[0] => on_board::<N, AtPhase<{ PHASES[0] }>>(climb),
+        phase if phase == PHASES[1] => on_board::<N, AtPhase<{ PHASES[1] }>>(climb),
+        phase if phase == PHASES[2] => on_board::<N, AtPhase<{ PHASES[2] }>>(climb),
         _ => Err(Unjudged::Refused),
     }
 }
 
 /// The servo alone.
-fn alone<N: Number, T: Task>(drawn: &RandomScene, task: T) -> Result<T::Result, Unjudged>
+fn alone<N: Number>(climb: Climb<'_>) -> Result<Found, Unjudged>
 where
     Environment: Tunable<N>,
 {
+    let drawn = climb.drawn;
     if !scenes::passes(&drawn.scene, N::FORMAT) {
         return Err(Unjudged::Refused);
     }
@@ -232,17 +211,14 @@ where
     let normalized = NormalizedScene::of(&drawn, &[*certified.assessment()], N::FORMAT);
     let normalized = normalized.ok_or(Unjudged::Unbounded)?;
     let machine = Machine::<N, Simultaneous>::new(Control::Bare(servo), Vec::new());
-    Ok(task.with(machine, normalized))
+    Ok(climb.through(&machine, normalized))
 }
 
-fn on_board<N: Number, M: OutputMode, T: Task>(
-    drawn: &RandomScene,
-    task: T,
-) -> Result<T::Result, Unjudged>
+fn on_board<N: Number, M: OutputMode>(climb: Climb<'_>) -> Result<Found, Unjudged>
 where
     Environment: Tunable<N> + SupportsTiming<M>,
 {
-    let mut drawn = drawn.clone();
+    let mut drawn = climb.drawn.clone();
     // Refused scenes are looked at for remedies, which takes a while.
     if !scenes::passes(&drawn.scene, N::FORMAT) {
         return Err(Unjudged::Refused);
@@ -278,7 +254,7 @@ where
     let Booted { servo_loop, .. } =
         boot::<_, N, M>(&program, &mut board, &requests).map_err(|_| Unjudged::Refused)?;
     let machine = Machine::new(Control::Board(servo_loop), sets);
-    Ok(task.with(machine, normalized))
+    Ok(climb.through(&machine, normalized))
 }
 
 /// Energy that rounding may leave, over that of the device alone.
@@ -304,12 +280,11 @@ struct Climb<'a> {
     rng: ChaCha8Rng,
 }
 
-impl Task for Climb<'_> {
-    type Result = Found;
-
-    fn with<N: Number, M: OutputMode>(
+impl Climb<'_> {
+    /// Searches through the runs of a servo in whatever number format and mode.
+    fn through<N: Number, M: OutputMode>(
         mut self,
-        machine: Machine<N, M>,
+        machine: &Machine<N, M>,
         normalized: NormalizedScene,
     ) -> Found
     where
@@ -421,9 +396,8 @@ impl Search {
 
     /// Searches through the runs of a scene.
     pub fn climb(&self, number: u64, drawn: &RandomScene, rng: ChaCha8Rng) -> Found {
-        let climb = Climb { search: self, number, drawn, rng };
         let nothing = Found::nothing();
-        match booted(drawn, climb) {
+        match booted(Climb { search: self, number, drawn, rng }) {
             Ok(found) => Found { scenes: 1, ..found },
             Err(Unjudged::Refused) => Found { scenes: 1, ..nothing },
             Err(Unjudged::Unbounded) => Found { scenes: 1, unbounded: 1, ..nothing },

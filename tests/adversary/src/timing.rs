@@ -96,11 +96,11 @@ impl Schedule {
     pub fn new(plan: &Plan, damping: f64, timing: &LoopTiming, audited: bool) -> Self {
         let delay = within(timing.delay, plan.within[0]);
         // No torque begins before its count.
-        let shifts = |jitter: f64, signs: Option<Signs>| {
-            signs.map_or([0.0; 3], |_| [-jitter.min(delay), 0.0, jitter])
+        let shifts = |jitter: f64, signs: &Option<Signs>| {
+            signs.as_ref().map_or([0.0; 3], |_| [-jitter.min(delay), 0.0, jitter])
         };
-        let torques = shifts(timing.jitters[0], plan.jitter.torques);
-        let counts = shifts(timing.jitters[1], plan.jitter.counts).map(|shift| -shift);
+        let torques = shifts(timing.jitters[0], &plan.jitter.torques);
+        let counts = shifts(timing.jitters[1], &plan.jitter.counts).map(|shift| -shift);
         // The earliest count begins the period.
         let start = -counts.iter().copied().fold(0.0, f64::min);
         let counts = counts.map(|shift| start + shift);

@@ -130,8 +130,7 @@ fn in_a_hand(
 #[test]
 #[ignore = "searches for long"]
 fn what_one_part_says_no_other_denies() {
-    let scenes = std::env::var("AGREEMENT_SCENES");
-    let scenes = scenes.map_or(SCENES, |scenes| scenes.parse().expect("a number"));
+    let scenes = tests::number("AGREEMENT_SCENES").unwrap_or(SCENES);
     let mut seen = Seen::default();
     for seed in 0..scenes {
         let rng = &mut ChaCha8Rng::seed_from_u64(seed);

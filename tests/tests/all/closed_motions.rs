@@ -149,17 +149,13 @@ fn torque(response: &Response<f64>) -> f64 {
     }
 }
 
-fn scenes() -> usize {
-    std::env::var("CLOSED_MOTIONS").map_or(200, |scenes| scenes.parse().expect("a number"))
-}
-
 /// Of each kind so many, of which a bound of nine tenths would be broken in at least a quarter.
 #[test]
 fn no_closed_motion_takes_more_energy_than_the_bound_allows() {
     for kind in [Kind::Wall, Kind::FreeModeWall, Kind::Profile, Kind::Sum] {
         let rng = &mut ChaCha8Rng::seed_from_u64(23);
         let (mut judged, mut near) = (0, 0);
-        while judged < scenes() {
+        while judged < tests::number("CLOSED_MOTIONS").unwrap_or(200) {
             let Some(drawn) = draw(rng, &choice(kind)) else { continue };
             // Without a torque limit, a wall on both sides is judged as a linear loop, by another bound.
             if kind == Kind::Wall && drawn.scene.torque_limit.is_none() {
@@ -171,7 +167,7 @@ fn no_closed_motion_takes_more_energy_than_the_bound_allows() {
             let (bound, scene) = (bounded.bound, &bounded.scene);
             let error = 1e-9 * (bound + scene.device.passivity());
             assert!(worst <= bound + error, "{worst} of {bound}: {scene:?}");
-            near += usize::from(worst > 0.9 * bound);
+            near += u64::from(worst > 0.9 * bound);
         }
         println!("{kind:?}: {near} of {judged} need more than 0.9 of their bound");
         assert!(4 * near > judged, "{kind:?}: {near} of {judged}");

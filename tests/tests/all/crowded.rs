@@ -12,7 +12,6 @@ use nalgebra::Complex;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tests::agreement;
-use tests::exact::{Q, of_f64};
 use tests::poly::Poly;
 use tests::scenes::{ExactScene, Frame, log_uniform, multiply};
 
@@ -47,11 +46,8 @@ fn butterworth(order: usize, cutoff: f64) -> Vec<Complex<f64>> {
 }
 
 fn scene(frame: &Frame, numerator: &[f64], denominator: &[f64]) -> ExactScene {
-    let exact = |c: &[f64]| {
-        Poly::descending(&c.iter().map(|&c| of_f64(c).expect("finite")).collect::<Vec<Q>>())
-    };
     let rational = Rational::of(numerator, denominator).expect("at most eight poles are drawn");
-    frame.with(Environment::Rational(rational), (exact(numerator), exact(denominator)))
+    frame.with(Environment::Rational(rational), (Poly::of(numerator), Poly::of(denominator)))
 }
 
 #[test]
@@ -105,8 +101,7 @@ fn crowded_roots_are_inside_where_that_is_proved() {
             })
             .collect();
         let coefficients = with_roots(&roots);
-        let exact: Vec<Q> = coefficients.iter().map(|&c| of_f64(c).expect("finite")).collect();
-        let truly = tests::remainders::is_schur(&Poly::descending(&exact));
+        let truly = tests::remainders::is_schur(&Poly::of(&coefficients));
         match strictly_schur(&Polynomial::descending(&coefficients, false)) {
             Ok(()) => assert!(truly, "seed {seed}: {coefficients:?}"),
             Err(error) if truly => {

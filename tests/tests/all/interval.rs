@@ -5,7 +5,7 @@ use haptic_servo::passivity::interval::Interval;
 use num_traits::{Signed, Zero};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use tests::exact::{Q, of_f64};
+use tests::exact::{Q, of_f64, q};
 use tests::floats::any_finite;
 
 const ROUNDS: u32 = 5_000;
@@ -21,10 +21,6 @@ fn draw(rng: &mut ChaCha8Rng) -> (Interval, [f64; 2]) {
     };
     let (lo, hi) = if a <= b { (a, b) } else { (b, a) };
     (Interval::new(lo, hi), [lo, hi])
-}
-
-fn q(x: f64) -> Q {
-    of_f64(x).expect("a finite number")
 }
 
 fn contains(interval: Interval, value: &Q) -> bool {

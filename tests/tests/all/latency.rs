@@ -4,7 +4,7 @@ use analysis::file::{self, Format};
 use analysis::verdict::{Verdict, VerdictReport, judge};
 use haptic_servo::scene::Scene;
 use serde_json::{Value, json};
-use tests::exact::{Q, of_decimal, of_f64};
+use tests::exact::{Q, of_decimal, q};
 
 /// Width of an index relative to its magnitude.
 const TOLERANCE: f64 = 1e-9;
@@ -78,8 +78,7 @@ fn complaints(case: &Value) -> Vec<String> {
         let alpha: Q = of_decimal(case["alpha_port"].as_str().expect("digits")).expect("a decimal");
         match found.alpha_port.map(|port| (port.lo, port.hi)) {
             Some((Some(lo), Some(hi))) => {
-                let end = |x| of_f64(x).expect("the ends are finite");
-                let encloses = end(lo) <= alpha && alpha <= end(hi);
+                let encloses = q(lo) <= alpha && alpha <= q(hi);
                 if !encloses || hi - lo > TOLERANCE * hi.abs() {
                     let wanted = &case["alpha_port"];
                     wrong.push(format!("{}: {wanted} in {lo:e} to {hi:e}", case["id"]));

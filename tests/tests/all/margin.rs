@@ -6,14 +6,14 @@ use haptic_servo::environment::Wall;
 use haptic_servo::scene::{Coupling, Device, Scene};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use tests::exact::of_f64;
+use tests::exact::q;
 use tests::rules::Exact;
 use tests::scenes;
 
 /// Whether the exact rule passes for a device that has lost some of its passivity.
 fn passes_without(exact: &Exact, loss: f64) -> bool {
     let mut weaker = exact.clone();
-    weaker.delta -= of_f64(loss).expect("finite");
+    weaker.delta -= q(loss);
     weaker.passes_exact()
 }
 

@@ -11,7 +11,7 @@ use num_traits::One;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use std::cmp::Ordering;
-use tests::exact::{Q, of_f64};
+use tests::exact::{Q, q};
 use tests::rules::Exact;
 use tests::scenes;
 
@@ -50,7 +50,7 @@ fn a_worst_period_holds_where_torques_are_latched_and_where_they_are_not() {
         let mut slow = drawn.scene;
         slow.timing.worst_period = Some(factor * slow.timing.period);
         let assessment = assess(&slow);
-        let factor = of_f64(factor).expect("finite");
+        let factor = q(factor);
         let mut at_once = drawn.exact.clone();
         at_once.delta /= &factor;
         if factor.is_one() || !slow.environment.is_late() {

@@ -104,8 +104,7 @@ fn scale_to_the_line(drawn: &mut ExactScene, share: f64) -> bool {
     let scaled: Vec<f64> = rational.numerator.as_slice().iter().map(|c| c * factor).collect();
     rational.numerator = Coefficients::new(&scaled).expect("as many as before");
     drawn.scene.environment = Environment::Rational(rational);
-    let exact: Vec<_> = scaled.iter().map(|&c| of_f64(c).expect("finite")).collect();
-    drawn.exact.numerator = Poly::descending(&exact);
+    drawn.exact.numerator = Poly::of(&scaled);
     true
 }
 

@@ -7,7 +7,7 @@ use analysis::studies::tradeoff::certificate::environments::{
 use analysis::studies::tradeoff::certificate::index_methods::IndexMethod;
 use num_traits::Signed;
 use std::cmp::Ordering;
-use tests::exact::{Q, of_f64, power_of_ten, ratio};
+use tests::exact::{Q, power_of_ten, q, ratio};
 use tests::index::{Defect, Index};
 use tests::poly::Poly;
 use tests::vectors;
@@ -44,16 +44,9 @@ fn the_reference_has_the_published_verdicts() {
     }
 }
 
-fn q(value: f64) -> Q {
-    of_f64(value).expect("finite")
-}
-
 fn index(environment: &Environment) -> Result<Index, Defect> {
-    let polynomial = |values: &[f64]| {
-        Poly::descending(&values.iter().map(|&value| q(value)).collect::<Vec<_>>())
-    };
-    let denominator = polynomial(&environment.denominator).raised(environment.delay);
-    Index::of(&polynomial(&environment.numerator), &denominator, &q(PERIOD))
+    let denominator = Poly::of(&environment.denominator).raised(environment.delay);
+    Index::of(&Poly::of(&environment.numerator), &denominator, &q(PERIOD))
 }
 
 /// The double next to an index, found by halving, from a guess that need not be good.

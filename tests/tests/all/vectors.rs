@@ -3,12 +3,11 @@
 use haptic_servo::certificate::{Assessment, RuleAnswer, assess};
 use haptic_servo::passivity::interval::Interval;
 use tests::agreement::relative_width;
-use tests::exact::{Q, of_f64};
+use tests::exact::{Q, q};
 use tests::vectors::{self, Case};
 
 fn encloses(interval: Interval, value: &Q) -> bool {
-    let end = |x| of_f64(x).expect("the ends are finite");
-    end(interval.lo()) <= *value && *value <= end(interval.hi())
+    q(interval.lo()) <= *value && *value <= q(interval.hi())
 }
 
 /// The index is in its enclosure, which is narrow, and it is missing exactly where it should be.

@@ -10,6 +10,7 @@ use nalgebra::Complex;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tests::loops::Loop;
+use tests::number;
 use tests::scenes::log_uniform;
 
 /// Aliases to each side that are summed up.
@@ -112,11 +113,6 @@ impl Found {
         self.shown += 1;
         self.constructed += usize::from(!found.worst.hand.absorbers.is_empty());
     }
-}
-
-fn number(name: &str) -> Option<u64> {
-    let value = std::env::var(name).ok()?;
-    Some(value.parse().unwrap_or_else(|_| panic!("{name}: {value}")))
 }
 
 /// `WORST_HAND_LOOPS` and `WORST_HAND_SEED` for more of them.

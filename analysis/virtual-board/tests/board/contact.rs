@@ -1,5 +1,5 @@
-//! Minutes of contact and of free motion: into the wall and out of it, turns that wrap the encoder's
-//! counter, and parameters that are changed while it is felt.
+//! More than 2^16 ticks of contact and of free motion: into the wall and out of it, turns that wrap the
+//! encoder's counter, and parameters that are changed while it is felt.
 
 use std::num::NonZeroU32;
 
@@ -16,12 +16,12 @@ use virtual_board::device::Device;
 use crate::bench::{Bench, MID_SCALE, on_both};
 use crate::device::{HandHeldDevice, Sample};
 
-/// Samples of the servo in a minute.
-const MINUTE: u64 = 60_000;
-/// Minutes of use, the second of which begins with what the first has left.
-const MINUTES: u64 = 2;
+/// Samples of the servo in a round of use: a little more than half of 2^16.
+const ROUND: u64 = 35_000;
+/// Rounds, the second of which begins with what the first has left.
+const ROUNDS: u64 = 2;
 
-/// A device in a hand that does the same over and over; and once a minute the encoder is spun away
+/// A device in a hand that does the same over and over; and once a round the encoder is spun away
 /// from the wall and back, far enough for a counter of 16 bits to wrap.
 struct Spun {
     hand: HandHeldDevice,
@@ -36,7 +36,7 @@ const WAY: u64 = 200;
 impl Spun {
     fn of(program: &Program) -> Self {
         let trajectory =
-            HandTrajectory::push_and_let_go().repeated_until(60.0 * (MINUTES + 1) as f64);
+            HandTrajectory::push_and_let_go().repeated_until((ROUND * (ROUNDS + 1)) as f64 * 1e-3);
         let (scene, transducers) = (&program.scene, &program.transducers);
         let device = SimulatedDevice::new(scene, trajectory, transducers).unwrap();
         Self { hand: HandHeldDevice::with(device), sample: 0 }
@@ -46,7 +46,7 @@ impl Spun {
 impl Device for Spun {
     fn sample(&mut self, code: Option<u16>, amplifier: bool) -> i32 {
         let turned = self.hand.sample(code, amplifier);
-        let spun = match self.sample % MINUTE {
+        let spun = match self.sample % ROUND {
             at if at < WAY => -SPEED,
             at if at < 2 * WAY => SPEED,
             _ => 0,
@@ -110,9 +110,9 @@ impl Use {
         }
     }
 
-    /// A minute in which all of it happens.
-    fn minute(&mut self) {
-        let end = self.bench.board().samples + MINUTE;
+    /// A round in which all of it happens.
+    fn round(&mut self) {
+        let end = self.bench.board().samples + ROUND;
         self.bench.run(2 * WAY + 100);
         self.set(&[(Parameter::Stiffness, 18.0)], true);
         self.bench.run(5000);
@@ -162,12 +162,12 @@ fn check_contact(samples: &[Sample], what: &str) {
 }
 
 #[test]
-fn minutes_of_use_miss_no_tick_and_lose_no_count() {
+fn long_use_misses_no_tick_and_loses_no_count() {
     on_both(|chip| {
         let mut used = Use::boot(chip);
-        for minute in 0..MINUTES {
-            used.minute();
-            used.check(&format!("minute {minute}"));
+        for round in 0..ROUNDS {
+            used.round();
+            used.check(&format!("round {round}"));
         }
     });
 }

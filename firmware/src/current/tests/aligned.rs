@@ -50,31 +50,47 @@ fn torques(rig: &mut ThreePhases) -> Vec<f64> {
     (0..12).map(torque).collect()
 }
 
+/// A code of 1000 has this torque in N m at every angle.
+fn assert_torque(rig: &mut ThreePhases, what: &str) {
+    let wanted = 0.2 * 1000.0 / 1791.0;
+    for torque in torques(rig) {
+        assert!((torque / wanted - 1.0).abs() < 0.04, "{what}: {torque}, {wanted}");
+    }
+}
+
+/// And an index aligns it after a reset as it was aligned before.
 #[test]
 fn any_wires_and_any_encoder_give_torque_of_the_right_sign() {
-    for wires in WIRES {
-        for encoder in [1.0, -1.0] {
-            let mut rig = rig(wires, encoder, Some(HANDLE));
-            let begin = rig.angle;
-            let phase = align(&mut rig).unwrap();
-            let is_odd = [[1, 0, 2], [0, 2, 1], [2, 1, 0]].contains(&wires);
-            assert_eq!(phase.is_reversed, is_odd != (encoder < 0.0), "{wires:?}, {encoder}");
-            // It returns to the magnets' zero, which is at most an electrical turn away.
-            assert!((rig.angle - begin).abs() < TAU / 7.0, "{}", rig.angle);
-            let wanted = 0.2 * 1000.0 / 1791.0;
-            for torque in torques(&mut rig) {
-                assert!(
-                    (torque / wanted - 1.0).abs() < 0.04,
-                    "{wires:?}, {encoder}: {torque}, {wanted}"
-                );
-            }
+    for (wires, encoder) in WIRES.into_iter().flat_map(|wires| [(wires, 1.0), (wires, -1.0)]) {
+        let what = format!("{wires:?}, {encoder}");
+        let mut first = rig(wires, encoder, Some(HANDLE));
+        let begin = first.angle;
+        let phase = align(&mut first).unwrap();
+        let is_odd = [[1, 0, 2], [0, 2, 1], [2, 1, 0]].contains(&wires);
+        assert_eq!(phase.is_reversed, is_odd != (encoder < 0.0), "{what}");
+        // It returns to the magnets' zero, which is at most an electrical turn away.
+        assert!((first.angle - begin).abs() < TAU / 7.0, "{}", first.angle);
+        for (index, reset) in [(1.0, 0.7), (-2.1, 3.0)] {
+            let mut first = first.clone();
+            assert_eq!(first.controller.index_offset(), None);
+            pass(&mut first, index, 5.0, 0).unwrap();
+            let offset = first.controller.index_offset().unwrap();
+            let design = BRUSHLESS.with_index(EncoderIndex { offset: Some(offset) });
+            let mut second = reset_at(reset, &first, &design);
+            let refused = PowerFault::NotAligned { by_index: true };
+            assert_eq!(second.controller.start(), Err(refused));
+            // From the other side.
+            pass(&mut second, index - reset, -5.0, 0).unwrap();
+            assert_eq!(second.controller.index_offset(), Some(offset));
+            assert_torque(&mut second, &format!("{what}, {index}"));
         }
+        assert_torque(&mut first, &what);
     }
 }
 
 #[test]
 fn begins_at_any_angle() {
-    for part in 0..8 {
+    for part in [0, 2, 5, 7] {
         let mut rig = rig(WIRES[0], 1.0, Some(HANDLE));
         rig.angle = f64::from(part) / 8.0 * TAU / 7.0 - 1.0 / 7.0;
         rig = rig.measured();
@@ -87,7 +103,7 @@ fn begins_at_any_angle() {
 
 #[test]
 fn other_pole_pairs_are_refused() {
-    for pole_pairs in [1.0, 2.0, 5.0, 6.0, 8.0, 9.0, 14.0, 21.0] {
+    for pole_pairs in [1.0, 6.0, 8.0, 14.0] {
         let mut rig = rig(WIRES[0], 1.0, Some(HANDLE));
         rig.pole_pairs = pole_pairs;
         let Err(AlignmentError::PolePairs { moved, expected: 8777 }) = align(&mut rig) else {
@@ -197,39 +213,11 @@ fn reset_at(angle: f64, before: &ThreePhases, design: &CurrentLoop) -> ThreePhas
 }
 
 #[test]
-fn an_index_aligns_a_motor_as_it_was_aligned_before() {
-    for wires in WIRES {
-        for encoder in [1.0, -1.0] {
-            for (index, reset) in [(1.0, 0.7), (-2.1, 3.0)] {
-                let mut first = rig(wires, encoder, Some(HANDLE));
-                align(&mut first).unwrap();
-                assert_eq!(first.controller.index_offset(), None);
-                pass(&mut first, index, 5.0, 0).unwrap();
-                let offset = first.controller.index_offset().unwrap();
-                let design = BRUSHLESS.with_index(EncoderIndex { offset: Some(offset) });
-                let mut second = reset_at(reset, &first, &design);
-                let refused = PowerFault::NotAligned { by_index: true };
-                assert_eq!(second.controller.start(), Err(refused));
-                // From the other side.
-                pass(&mut second, index - reset, -5.0, 0).unwrap();
-                assert_eq!(second.controller.index_offset(), Some(offset));
-                let wanted = 0.2 * 1000.0 / 1791.0;
-                for torque in torques(&mut second) {
-                    assert!(
-                        (torque / wanted - 1.0).abs() < 0.04,
-                        "{wires:?}, {encoder}, {index}: {torque}, {wanted}"
-                    );
-                }
-            }
-        }
-    }
-}
-
-#[test]
 fn the_offset_is_the_angle_of_the_magnets_at_the_index() {
+    let mut aligned = rig(WIRES[0], 1.0, Some(HANDLE));
+    align(&mut aligned).unwrap();
     for index in [0.3, 1.4, 2.9] {
-        let mut rig = rig(WIRES[0], 1.0, Some(HANDLE));
-        align(&mut rig).unwrap();
+        let mut rig = aligned.clone();
         pass(&mut rig, index, 3.0, 0).unwrap();
         let IndexOffset { counts, is_reversed } = rig.controller.index_offset().unwrap();
         let turns = (rig.offset + 7.0 * index).rem_euclid(TAU) / TAU;

@@ -169,6 +169,7 @@ impl Leg {
 }
 
 /// A brushless motor with its handle, its supply and its encoder, and a controller.
+#[derive(Clone)]
 pub struct ThreePhases {
     pub controller: CurrentController,
     pub motor: Motor,

@@ -9,6 +9,7 @@ use haptic_model::host::{HostLaw, HostileHost, Reading};
 use haptic_servo::environment::{VariableDelay, Wall};
 use haptic_servo::host::{HostResponse, HostTorque, Sampling, Tank};
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
+use nalgebra::{SMatrix, SVector};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -32,43 +33,23 @@ enum Debit {
 
 /// Position, speed, torque of the amplifier; then its command, or the slope of its torque between two updates, and
 /// the torque of the scene.
-type State = [f64; 5];
+type State = SVector<f64, 5>;
 
-/// The transition over a tick, or for an amplifier with updates over the time between two of them, by the series
-/// of the exponential over a small part of it, squared.
-fn transition(case: &Case) -> [State; 5] {
+/// The transition over a tick, or for an amplifier with updates over the time between two of them.
+fn transition(case: &Case) -> SMatrix<f64, 5, 5> {
     let &Case { inertia, stiffness, lag, .. } = case;
-    let mut rates = [[0.0; 5]; 5];
-    rates[0][1] = 1.0;
-    rates[1] = [-stiffness / inertia, -DELTA / inertia, 1.0 / inertia, 0.0, 1.0 / inertia];
+    let mut rates = SMatrix::<f64, 5, 5>::zeros();
+    rates[(0, 1)] = 1.0;
+    let of_speed = [-stiffness / inertia, -DELTA / inertia, 1.0 / inertia, 0.0, 1.0 / inertia];
+    rates.set_row(1, &of_speed.into());
     if case.updates.is_some() {
-        rates[2][3] = 1.0;
+        rates[(2, 3)] = 1.0;
     } else if lag > 0.0 {
-        rates[2] = [0.0, 0.0, -1.0 / lag, 1.0 / lag, 0.0];
+        (rates[(2, 2)], rates[(2, 3)]) = (-1.0 / lag, 1.0 / lag);
     } else {
-        (rates[1][2], rates[1][3]) = (0.0, 1.0 / inertia);
+        (rates[(1, 2)], rates[(1, 3)]) = (0.0, 1.0 / inertia);
     }
-    let part = case.step() / f64::from(1 << 16);
-    let mut sum = product(&[[0.0; 5]; 5], &rates);
-    for (i, row) in sum.iter_mut().enumerate() {
-        row[i] = 1.0;
-    }
-    let mut term = sum;
-    for power in 1..8 {
-        term = product(&term, &rates).map(|row| row.map(|it| it * part / f64::from(power)));
-        for (row, more) in sum.iter_mut().zip(&term) {
-            row.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
-        }
-    }
-    for _ in 0..16 {
-        sum = product(&sum, &sum);
-    }
-    sum
-}
-
-fn product(a: &[State; 5], b: &[State; 5]) -> [State; 5] {
-    let entry = |i: usize, j: usize| (0..5).map(|k| a[i][k] * b[k][j]).sum();
-    std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)))
+    (rates * case.step()).exp()
 }
 
 /// A current loop on a board: its updates in a period, the update at which a torque begins, and whether its code
@@ -286,11 +267,8 @@ fn run(random: &mut ChaCha8Rng, without: Option<Debit>) -> f64 {
     let Some(mut tank) = case.tank(without) else { return 0.0 };
     let Case { inertia, stiffness, .. } = case;
     let motion = transition(&case);
-    let moves = |state: State| -> State {
-        std::array::from_fn(|i| (0..5).map(|j| motion[i][j] * state[j]).sum())
-    };
     let mut wish = Wish::draw(random, (stiffness / inertia).sqrt() * PERIOD);
-    let (mut state, mut before, mut most) = ([0.0; 5], 0, 0.0_f64);
+    let (mut state, mut before, mut most) = (State::zeros(), 0, 0.0_f64);
     let mut bridge = Bridge::default();
     for tick in 0..TICKS {
         let count = case.counted(state[0]);
@@ -313,12 +291,12 @@ fn run(random: &mut ChaCha8Rng, without: Option<Debit>) -> f64 {
                 }
                 let left = (-step / case.lag).exp();
                 state[3] = (bridge.command - state[2]) * (1.0 - left) / step;
-                state = moves(state);
+                state = motion * state;
             }
             bridge.spring = spring;
         } else {
             state[3] = command;
-            state = moves(state);
+            state = motion * state;
             state[4] = spring;
         }
         let stored = 0.5 * (inertia * state[1] * state[1] + stiffness * state[0] * state[0]);

@@ -8,12 +8,9 @@ use haptic_servo::environment::Side;
 use haptic_servo::scene::{Coupling, Scene};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
+use tests::number;
 
 use super::{FEW, SCENES};
-
-fn number(name: &str) -> Option<u64> {
-    std::env::var(name).ok().map(|value| value.parse().unwrap_or_else(|e| panic!("{name}: {e}")))
-}
 
 #[test]
 fn no_hand_takes_energy_out_of_a_certified_scene() {

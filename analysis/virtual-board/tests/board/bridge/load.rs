@@ -203,16 +203,11 @@ fn another_supply_and_a_broken_comparator_are_refused() {
         let run = Run::of(test, |circuit| circuit.supply = Supply::stiff(2.2));
         assert!(!run.passes && !run.has_switched(), "{test}");
     }
+    let none = Run::of(NO_DUTY, |circuit| circuit.supply = Supply::stiff(0.2));
+    assert!(!none.passes && !none.has_switched());
     for test in WITH_LOAD {
-        for change in [
-            |circuit: &mut Circuit| circuit.supply = Supply::stiff(0.2),
-            |circuit: &mut Circuit| {
-                circuit.supply = Supply::stiff(17.0);
-            },
-        ] {
-            let run = Run::of(test, change);
-            assert!(!run.passes && !run.has_switched(), "{test}");
-        }
+        let run = Run::of(test, |circuit| circuit.supply = Supply::stiff(17.0));
+        assert!(!run.passes && !run.has_switched(), "{test}");
     }
     for test in [COMPARATORS, NO_DUTY] {
         let run = Run::of(test, |circuit| circuit.parts.senses[2].comparator_offset = 0.03);
