@@ -129,6 +129,24 @@ fn a_scene_file_runs_on_a_board_that_is_tuned_and_watched() {
     assert!(matches!(lost, LinkError::Lost { .. }), "{lost}");
 }
 
+/// A board does not send the readings of its encoder: what it refuses for their sake has no false reason.
+#[test]
+fn a_refusal_for_the_sake_of_the_encoder_says_so() {
+    let text = include_str!("../../explore/src/presets/gimbal_knob.toml");
+    let file = parse("gimbal_knob.toml", Format::Toml, text).unwrap();
+    let board = SimulatedBoard::of_file(&file, &loopback(), Pacing::Unthrottled).unwrap();
+    let mut link = Link::open(board.address()).unwrap();
+    let mut refused = |change: &str| match link.request(change::line(change).unwrap()).unwrap() {
+        RequestResult::Refused(why) => why,
+        other => panic!("{change}: {other:?}"),
+    };
+    // Friction does not hold the mean torque through the nonlinear encoder.
+    let motor = refused("torque=0.09");
+    assert!(motor.contains("the readings of its encoder and its friction"), "{motor}");
+    let steep = refused("count=200");
+    assert!(steep.contains("N m s/rad of damping"), "{steep}");
+}
+
 /// The hand moves the gimbal knob over its cogging, and not against a friction that is stronger than the hand.
 #[test]
 fn the_device_of_a_file_cogs_and_rubs() {

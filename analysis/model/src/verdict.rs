@@ -80,8 +80,10 @@ pub struct AtRest {
     /// The addition where the torque changes its sign; absent if there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crossing: Option<f64>,
-    /// The sum: bound on the torque's error, and the friction that prevents a limit cycle.
+    /// The sum: bound on the torque's error.
     pub hum: f64,
+    /// Friction that prevents a limit cycle: the sum, and the mean torque of what repeats in every turn.
+    pub friction_for_rest: f64,
     /// Declared friction of the device; `None`: not stated.
     pub friction: Option<f64>,
     /// Whether that is enough; `None` where it cannot be said.
@@ -101,6 +103,7 @@ impl AtRest {
             current: rest.current,
             crossing: rest.crossing,
             hum: rest.hum(),
+            friction_for_rest: rest.for_rest(),
             friction: rest.friction,
             comes_to_rest: rest.comes_to_rest(),
             in_any_motion: rest.in_any_motion,

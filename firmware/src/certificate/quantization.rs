@@ -4,7 +4,7 @@
 //! The certificate is about a controller without quantisation. Encoder, DAC and the rounding of numbers
 //! change its torque by at most some `e`. Coulomb friction of `e` or more dissipates the energy of that
 //! error, `f_c abs(v) >= e v`, so the device is as passive as certified. With less friction a limit cycle at
-//! rest is possible.
+//! rest is possible. What holds the mean torque of an endless profile or of a learnt map is not there for `e`.
 //!
 //! For a linear scene, and for a spring that is one-sided or limited, `e` holds for any motion. A damper
 //! behind a face does not have such an `e`: a count more or less changes the tick in which it switches, and
@@ -15,6 +15,7 @@
 use core::f64::consts::TAU;
 use core::fmt;
 
+use super::endless::mean_torque;
 use super::linearity::is_nonlinear;
 use super::loop_intervals::LoopIntervals;
 use super::model::LoopTransfers;
@@ -26,6 +27,7 @@ use crate::encoder_reading::EncoderReading;
 use crate::environment::{Environment, Parts, Rational};
 use crate::matched::{MatchedCoupling, Trail};
 use crate::number::Format;
+use crate::passivity::interval::Interval;
 use crate::passivity::polynomial::{Polynomial, UnitRoot};
 use crate::passivity::transfer::Transfer;
 use crate::scene::Scene;
@@ -96,6 +98,9 @@ pub struct QuantizationBound {
     pub crossing: Option<f64>,
     /// Declared friction of the device.
     pub friction: Option<f64>,
+    /// Mean torque in N m of what repeats in every turn, which takes as much of the friction (theory, section
+    /// 18.4).
+    pub mean: f64,
     /// Largest torque of the motor, as far as stated.
     pub motor: Option<f64>,
     /// Whether the bound holds for any motion. Otherwise it holds at rest, and on one side of a
@@ -110,6 +115,7 @@ impl QuantizationBound {
         let Peak { norm: peak, in_any_motion } = peak(scene, format)?;
         let steps = &steps.read_by(scene.latency.encoder);
         let anticogging = Anticogged::of(scene, format);
+        let mean = mean_torque::<Environment>(scene, &LoopIntervals::of(scene, format));
         let found = Self {
             encoder: steps.encoder.map(|step| 0.5 * step * (peak + anticogging.slope)),
             numbers: numbers(scene, format, steps, peak)? + anticogging.numbers,
@@ -117,6 +123,7 @@ impl QuantizationBound {
             current: steps.current,
             crossing: steps.crossing,
             friction: steps.friction,
+            mean: mean.map_or(0.0, Interval::hi),
             motor: match (scene.torque_limit, steps.full_scale) {
                 (Some(limit), Some(full_scale)) => Some(limit.min(full_scale)),
                 (limit, full_scale) => limit.or(full_scale),
@@ -136,10 +143,15 @@ impl QuantizationBound {
         counted + compliance(scene, format) * torque
     }
 
-    /// Bound on the torque error of all stated steps together, in N m: with this friction the device comes to
-    /// rest. With less, a limit cycle may exceed this torque.
+    /// Bound on the torque error of all stated steps together, in N m. With less friction than
+    /// [`Self::for_rest`] a limit cycle may exceed this torque.
     pub fn hum(&self) -> f64 {
         self.parts().iter().filter_map(|(_, part)| *part).sum()
+    }
+
+    /// Friction in N m with which the device comes to rest.
+    pub fn for_rest(&self) -> f64 {
+        self.hum() + self.mean
     }
 
     /// The parts by name, as far as stated.
@@ -161,7 +173,7 @@ impl QuantizationBound {
 
     /// Whether the declared friction is sufficient; `None` if that is unknown.
     pub fn comes_to_rest(&self) -> Option<bool> {
-        let enough = self.friction? >= self.hum();
+        let enough = self.friction? >= self.for_rest();
         let all_stated = self.encoder.is_some() && self.converter.is_some();
         (all_stated || !enough).then_some(enough)
     }
@@ -181,17 +193,23 @@ impl fmt::Display for QuantizationBound {
             ),
             (None, None, _) => write!(
                 f,
-                "errors of torque of up to {hum} N m make a limit cycle possible unless the device has {hum} N m \
-                 of Coulomb friction"
-            ),
-            (None, Some(friction), Some(false)) => write!(
-                f,
-                "errors of torque of up to {hum} N m make a limit cycle possible: the device's friction of \
-                 {friction} N m is lower"
+                "errors of torque of up to {hum} N m make a limit cycle possible unless the device has {} N m \
+                 of Coulomb friction",
+                RoundUp3(self.for_rest())
             ),
             (None, Some(friction), rests) => {
-                let as_far = if rests.is_none() { ", as far as the steps are stated" } else { "" };
-                write!(f, "the device's friction of {friction} N m prevents a limit cycle{as_far}")
+                if rests == Some(false) {
+                    write!(f, "errors of torque of up to {hum} N m make a limit cycle possible: ")?;
+                }
+                write!(f, "the device's friction of {friction} N m")?;
+                if self.mean > 0.0 {
+                    write!(f, ", less {} N m against the mean torque,", RoundUp3(self.mean))?;
+                }
+                f.write_str(match rests {
+                    Some(false) => " is lower",
+                    Some(true) => " prevents a limit cycle",
+                    None => " prevents a limit cycle, as far as the steps are stated",
+                })
             }
         }?;
         if let Some(crossing) = self.crossing.map(RoundUp3) {

@@ -179,8 +179,9 @@ impl fmt::Display for Refusal {
             ),
             Self::Set(step) => write!(
                 f,
-                "the board refused the set by its {}, and this program cannot reproduce the \
-                 refusal: they have different versions",
+                "the board refused the set by its {}, and this program cannot reproduce the refusal: the board \
+                 certifies with the readings of its encoder and its friction, which it does not send, and \
+                 `haptic certify` of its scene file tells the reason; or they have different versions",
                 step.as_str()
             ),
         }

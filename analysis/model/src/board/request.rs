@@ -138,8 +138,13 @@ pub fn refusal_in_words(
     parameters: &ActiveParameters,
 ) -> RequestResult {
     let changes = request.changes();
-    if let Err(refused) = judge(request, budget, description, parameters)
+    let judged = |request: &Request| judge(request, budget, description, parameters);
+    // What holds without the changes, too, is not the board's reason: it certifies with the readings of its encoder,
+    // which it does not send.
+    let unchanged = judged(&Request::Set(Changes::new())).err();
+    if let Err(refused) = judged(request)
         && refused.0.step() == step
+        && unchanged.is_none_or(|before| before.1 != refused.1)
     {
         return RequestResult::Refused(refused.1);
     }

@@ -35,7 +35,9 @@ pub struct DeviceTable {
 pub fn device(mut section: Section<'_>, purpose: Purpose) -> Read<DeviceTable> {
     let friction = section.optional(&key::DEVICE_FRICTION);
     let cogging = section.tables_or_one(&key::COGGING).and_then(|tables| {
-        tables.map(|tables| all(tables.into_iter().map(sine)).map(Cogging::of)).transpose()
+        let mut counts = Vec::new();
+        let sines = |tables: Vec<_>| all(tables.into_iter().map(|table| sine(table, &mut counts)));
+        tables.map(sines).transpose().map(|read| read.map(Cogging::of))
     });
     let masses = section.tables(&key::MASS);
     let is_rigid = matches!(masses, Ok(None));
@@ -73,11 +75,18 @@ pub fn device(mut section: Section<'_>, purpose: Purpose) -> Read<DeviceTable> {
     Ok(DeviceTable { chain, device, friction, cogging, latency })
 }
 
-fn sine(mut section: Section<'_>) -> Read<Sine> {
+/// One harmonic; the `counts` are those of the harmonics before.
+fn sine(mut section: Section<'_>, counts: &mut Vec<f64>) -> Read<Sine> {
     let [torque, count, phase] = [&key::COGGING_TORQUE, &key::COGGING_COUNT, &key::COGGING_PHASE]
         .map(|key| section.number(key));
     section.finish();
-    Ok(Sine { torque: torque?, count: count?, phase: phase? })
+    let count = count?;
+    if counts.contains(&count) {
+        let reason = "is the count of a harmonic before, too: write one harmonic of both";
+        return Err(section.conflict(&key::COGGING_COUNT, reason));
+    }
+    counts.push(count);
+    Ok(Sine { torque: torque?, count, phase: phase? })
 }
 
 /// A step response of unknown shape cannot stand beside a lag: no bound is known for both.

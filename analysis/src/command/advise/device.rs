@@ -1,7 +1,7 @@
 //! `haptic advise device`: what a motor, an encoder, a rate and an amplifier make possible, before they are
 //! bought.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, TAU};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -207,6 +207,11 @@ fn detents(file: &SceneFile, slope: f64) -> Option<(f64, f64)> {
     let opposed = file.scene.environment.parts().anticogging.map_or(0.0, |learnt| learnt.share);
     let holds = file.friction? + (1.0 - opposed) * disturbance.cogging.torque();
     let error = 0.5 * file.encoder_step? * file.scene.latency.encoder.steps();
+    let eta = file.scene.latency.encoder.linearity;
+    // Friction that holds their mean torque through a nonlinear encoder (theory, equation 68) is not there against the
+    // errors at rest; in straight lines they are less steep than this slope.
+    let left = slope - 2.0 * holds * eta / (1.0 - eta) / error;
+    let slope = slope.min(FRAC_PI_2 * left);
     let count = (slope / (2.0 * holds)).min(TAU / (4.0 * error)).floor();
     (count >= 1.0).then(|| (count, slope / count))
 }

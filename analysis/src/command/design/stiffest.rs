@@ -158,14 +158,16 @@ fn silent_in_words(wall: Option<&Wall>) -> String {
 
 /// The friction that a wall needs to be silent at rest.
 fn rest_in_words(rest: &AtRest, full_scale: Option<f64>) -> String {
-    let needed = significant(rest.hum, 3);
     let motor = full_scale.filter(|&full_scale| rest.hum > full_scale);
     let needed = match motor {
         Some(motor) => format!(
-            "a limit cycle of up to {needed} N m is possible, more than the {} N m of the motor",
+            "a limit cycle of up to {} N m is possible, more than the {} N m of the motor",
+            significant(rest.hum, 3),
             significant(motor, 3)
         ),
-        None => format!("{needed} N m of friction prevent a limit cycle"),
+        None => {
+            format!("{} N m of friction prevent a limit cycle", significant(rest.friction_for_rest, 3))
+        }
     };
     let of_device = match (rest.friction, rest.comes_to_rest) {
         (None, _) => "; with `device.friction` in the file, the stiffest silent wall is named, too"

@@ -21,7 +21,7 @@ impl FormatProblem {
             crossing: crossing.map(|torque| torque / units.torque),
         };
         let scene = units.scene(&self.scene);
-        let QuantizationBound { encoder, numbers, converter, motor, in_any_motion, .. } =
+        let QuantizationBound { encoder, numbers, converter, mean, motor, in_any_motion, .. } =
             QuantizationBound::of(&scene, arithmetic.format(), &steps)?;
         let in_newton_metres = |torque: f64| torque * units.torque;
         Some(QuantizationBound {
@@ -31,6 +31,7 @@ impl FormatProblem {
             current,
             crossing,
             friction,
+            mean: in_newton_metres(mean),
             motor: motor.map(in_newton_metres),
             in_any_motion,
         })

@@ -181,6 +181,25 @@ fn an_endless_profile_needs_friction_beside_a_nonlinear_encoder() {
     assert!(certify(&stopped.scene).is_ok());
 }
 
+/// Friction that holds the mean torque is not there against the torque errors at rest.
+#[test]
+fn friction_holds_the_mean_torque_before_it_ends_a_limit_cycle() {
+    let rest = |friction: f64| {
+        let device = format!("damping = 0.022\nfriction = {friction:?}");
+        let encoder = "counts_per_turn = 16384\nlinearity = 0.028\nnoise = 2";
+        let full_scale = "[limits]\nfull_scale = 0.1\n";
+        let file = file(&device, "period = 0.001", encoder, &format!("{KNOB}{full_scale}"));
+        judge_file(&file, Numbers::F64).rest.unwrap()
+    };
+    let mean = 0.02 * 0.028 / (1.0 - 0.028);
+    let hum = rest(mean * 1.001).hum;
+    assert!(hum > 1e-4, "{hum}");
+    near(rest(1.0).friction_for_rest, mean + hum);
+    for (friction, rests) in [(mean.max(hum) * 1.001, false), ((mean + hum) * 1.001, true)] {
+        assert_eq!(rest(friction).comes_to_rest, Some(rests), "{friction}");
+    }
+}
+
 #[test]
 fn noise_and_hysteresis_are_steps_of_the_encoder() {
     let at_rest = |encoder: &str| {
