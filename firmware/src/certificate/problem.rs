@@ -152,7 +152,11 @@ impl PassivityProblem {
             return Err(Rejection::IllPosed { loop_gain });
         }
         self.stated = if scene.environment.has_transfer() { None } else { bound };
+        let is_behind_inl = !numbers.is_at_port && !numbers.linearity.is_zero();
         self.no_transfer = match &scene.environment {
+            environment if is_behind_inl && !environment.has_transfer() => {
+                Some(UndecidedReason::NoProofWithInl)
+            }
             environment if environment.snaps() => Some(UndecidedReason::NoSnapBound),
             environment if environment.profile().is_some() => Some(UndecidedReason::NoBoundAtPort),
             environment if environment.has_transfer() => None,

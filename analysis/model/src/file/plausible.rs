@@ -24,7 +24,7 @@ const FARTHEST_FACE: f64 = 3.0 * TAU;
 /// A sentence for each implausible number of a file.
 pub fn warnings(file: &SceneFile) -> Vec<String> {
     let doubts =
-        [step, period, inertia, damping, friction, full_scale, face].map(|doubt| doubt(file));
+        [step, period, inertia, damping, friction, cogging, full_scale, face].map(|doubt| doubt(file));
     doubts.into_iter().flatten().collect()
 }
 
@@ -76,8 +76,20 @@ fn damping(file: &SceneFile) -> Option<String> {
 }
 
 fn friction(file: &SceneFile) -> Option<String> {
+    beyond_motor(file, &key::DEVICE_FRICTION, file.friction?)
+}
+
+fn cogging(file: &SceneFile) -> Option<String> {
+    let torques = file.cogging?.harmonics.iter().map(|it| it.torque);
+    beyond_motor(file, &key::COGGING_TORQUE, torques.fold(0.0, f64::max))
+}
+
+/// A torque of the device itself that is more than the motor's.
+fn beyond_motor(file: &SceneFile, key: &Key, torque: f64) -> Option<String> {
     let motor = file.scene.torque_limit.or(file.full_scale);
-    let friction = file.friction.filter(|&it| it > motor.unwrap_or(LARGEST_FRICTION))?;
+    if torque <= motor.unwrap_or(LARGEST_FRICTION) {
+        return None;
+    }
     let why = motor.map_or_else(
         || "is more than a hand moves".to_owned(),
         |motor| {
@@ -87,7 +99,7 @@ fn friction(file: &SceneFile) -> Option<String> {
             )
         },
     );
-    Some(doubt(&key::DEVICE_FRICTION, friction, &why, 1e-3 * friction, "mN m"))
+    Some(doubt(key, torque, &why, 1e-3 * torque, "mN m"))
 }
 
 fn full_scale(file: &SceneFile) -> Option<String> {
@@ -105,6 +117,7 @@ fn face(file: &SceneFile) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::disturbance::sine;
     use crate::fixture::file_on_paddle;
 
     #[test]
@@ -122,6 +135,10 @@ mod tests {
             (changed(|file| file.encoder_step = Some(4096.0)), ["4096 rad", "mean 0.00153,"]),
             (changed(|file| file.encoder_step = Some(0.36)), ["17 counts", "mean 0.00628,"]),
             (changed(|file| file.friction = Some(49_200.0)), ["49200 N m", "mN m"]),
+            (
+                changed(|file| file.cogging = Some(sine(5000.0, 84.0))),
+                ["`device.cogging.torque` = 5000 N m", "mean 5,"],
+            ),
             (changed(|file| file.full_scale = Some(300.0)), ["hand holds", "mean 0.3,"]),
             (changed(|file| file.scene.device.damping = 22.0), ["1000 times", "mean 0.022,"]),
             (changed(|file| file.scene.device.inertia = 220.0), ["hand", "mean 2.2e-5,"]),

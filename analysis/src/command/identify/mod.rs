@@ -197,6 +197,10 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         let file = arguments.file.as_deref().unwrap_or(Path::new("-"));
         return linearity::run(arguments, file, counts, reference);
     }
+    // The file of which the turns replace numbers has to be there before a motor turns for minutes.
+    if let Some(path) = arguments.output.as_deref().filter(|_| arguments.turns) {
+        file::load_device(&path.to_string_lossy())?;
+    }
     let measured = measured(arguments)?;
     if arguments.turns {
         return turns::run(arguments, &measured);
