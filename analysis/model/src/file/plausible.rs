@@ -23,8 +23,8 @@ const FARTHEST_FACE: f64 = 3.0 * TAU;
 
 /// A sentence for each implausible number of a file.
 pub fn warnings(file: &SceneFile) -> Vec<String> {
-    let doubts =
-        [step, period, inertia, damping, friction, cogging, full_scale, face].map(|doubt| doubt(file));
+    let doubts = [step, period, inertia, damping, friction, cogging, full_scale, face]
+        .map(|doubt| doubt(file));
     doubts.into_iter().flatten().collect()
 }
 

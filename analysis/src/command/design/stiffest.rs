@@ -166,7 +166,10 @@ fn rest_in_words(rest: &AtRest, full_scale: Option<f64>) -> String {
             significant(motor, 3)
         ),
         None => {
-            format!("{} N m of friction prevent a limit cycle", significant(rest.friction_for_rest, 3))
+            format!(
+                "{} N m of friction prevent a limit cycle",
+                significant(rest.friction_for_rest, 3)
+            )
         }
     };
     let of_device = match (rest.friction, rest.comes_to_rest) {
