@@ -9,7 +9,7 @@ use haptic_model::host::{
 };
 use haptic_servo::host::{HostError, HostTorque};
 use haptic_servo::number::Format;
-use haptic_servo::scene::Scene;
+use haptic_servo::scene::{Latency, Scene, TimeRange};
 use haptic_servo::servo::{OutputTiming, Transducers};
 use haptic_servo::wire::host::{HostCommand, HostReport, HostRequest, HostState};
 use haptic_servo::wire::message::{LONGEST_TO_HOST, ToBoard};
@@ -68,10 +68,9 @@ impl BesideHost {
         HostSender::new(host, self.scene.timing.period, &self.transducers, 0)
     }
 
-    fn energy(&self, output: OutputTiming) -> HostEnergy {
+    fn energy(&self, output: OutputTiming, latency: &Latency) -> HostEnergy {
         let ticks = usize::from(output == OutputTiming::Latched);
-        let Scene { latency, timing, .. } = &self.scene;
-        HostEnergy::new(&self.budget, latency, timing.period, ticks)
+        HostEnergy::new(&self.budget, latency, self.scene.timing.period, ticks)
     }
 
     fn host_run(&self) -> HostRun {
@@ -93,7 +92,7 @@ impl BesideHost {
         let output = OutputTiming::Simultaneous;
         let mut run = Run::from_rest(controller);
         let mut servo = self.servo(controller, output)?.driven_by(self.sender());
-        let (mut host, mut energy) = (self.host_run(), self.energy(output));
+        let (mut host, mut energy) = (self.host_run(), self.energy(output, &self.scene.latency));
         while run.ticks.len() < ticks
             && let Some(count) = device.count()
         {
@@ -163,7 +162,10 @@ impl BesideHost {
         board.align_and_arm(&self.scene)?;
         let before = board.past().to_vec();
         let mut held = HeldShaft { board, shaft };
-        let recorded = Recorded { before, ..self.record(&mut held, ticks, progress)? };
+        // The steps of the shaft are those of the board's ticks, and its torques come without the encoder's age.
+        let output_delay = TimeRange::exactly(self.scene.latency.stated_delay());
+        let latency = Latency { output_delay, ..self.scene.latency };
+        let recorded = Recorded { before, latency, ..self.record(&mut held, ticks, progress)? };
         let report = BoardMeasurement::Virtual(held.board.finish()?);
         self.replayed(recorded, controller, self.output(), report)
     }
@@ -208,7 +210,8 @@ impl BesideHost {
             let heard = held.stand(&std::mem::take(&mut bytes))?;
             states.extend(heard.into_iter().filter_map(|byte| reported(&mut decoder, byte)));
         }
-        Ok(Recorded { before: Vec::new(), ran, torques, states, energy, final_speed })
+        let (before, latency) = (Vec::new(), self.scene.latency);
+        Ok(Recorded { before, latency, ran, torques, states, energy, final_speed })
     }
 
     fn replayed(
@@ -225,7 +228,7 @@ impl BesideHost {
             Some(first) => servo.follow(&recorded.before[first..]),
             None => servo.rest(begin),
         }
-        let (mut host, mut energy) = (self.host_run(), self.energy(output));
+        let (mut host, mut energy) = (self.host_run(), self.energy(output, &recorded.latency));
         for (exchanged, command) in recorded.ran.iter().zip(commands) {
             let &Exchanged { count, code, moved } = exchanged;
             if let Some(torque) = command {
@@ -279,6 +282,8 @@ struct Exchanged {
 struct Recorded {
     /// The count of each tick before the run, and whether an alignment moved the handle in it, where a motor did.
     before: Vec<(i32, bool)>,
+    /// From the instants of the recorded steps to their torques.
+    latency: Latency,
     ran: Vec<Exchanged>,
     /// The torques of the commands, in N m.
     torques: Vec<f32>,

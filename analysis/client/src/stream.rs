@@ -7,12 +7,12 @@ use haptic_model::board::client::Event;
 use haptic_model::board::timing::QUERY;
 use haptic_servo::servo_loop::State;
 use haptic_servo::torque::LimitReason;
-use haptic_servo::wire::host::{HostCommand, HostRequest, HostState};
+use haptic_servo::wire::host::{HostCommand, HostRequest, HostState, LONGEST_REPORT};
 use haptic_servo::wire::message::{BoardUnits, ToBoard};
 use thiserror::Error;
 
-use super::LinkError;
 use super::link::{Link, Wire};
+use super::{Address, LinkError};
 
 /// What a streamed torque may depend on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,14 +44,26 @@ pub enum StreamError {
     #[error("the program {program} takes no torque from a host: its scene has no [host] table")]
     NoHost { program: String },
     #[error(
-        "the rate of a stream is {rate} Hz; it must be above 0 and at most {most} Hz, a tick each"
+        "the rate of a stream is {rate} Hz; it must be from {least} to {most} Hz, at most one in each tick, and no \
+         more than the port carries"
     )]
-    Rate { rate: f64, most: f64 },
+    Rate { rate: f64, least: f64, most: f64 },
     #[error(
-        "the function returned a torque of {torque} N m at {time} s; it must be a finite number. The torque is \
+        "the function returned a torque of {torque:?} N m at {time} s; it must be a finite number. The torque is \
          switched off"
     )]
     Torque { torque: f64, time: f64 },
+}
+
+/// The slowest stream in Hz: a board that is silent for longer is lost.
+const SLOWEST: f64 = 0.5;
+
+/// The most commands whose reports are under way: a second of them at the usual rate.
+const UNDER_WAY: u16 = 1000;
+
+/// The torques a second whose reports a serial line carries, at ten bits for a byte.
+fn torques_of_line(baud: u32) -> f64 {
+    (f64::from(baud) / (10 * LONGEST_REPORT) as f64).floor()
 }
 
 /// Counts on the board as positions and times.
@@ -63,8 +75,8 @@ struct Counts {
 }
 
 impl Link {
-    /// Sends a torque in N m for the motion that the board reports, `rate` times a second, until `function`
-    /// returns none. On the way from one torque to the next the board moves along a line if `is_smooth`.
+    /// Sends a torque in N m for the last motion that the board has reported, `rate` times a second, until
+    /// `function` returns none; while no report comes, it sends the last torque again. On the way from one torque to the next the board moves along a line if `is_smooth`.
     ///
     /// The stream ends with a torque of zero. If this program stops, the board fades the torque out by itself.
     ///
@@ -77,17 +89,21 @@ impl Link {
         mut function: impl FnMut(&StreamTick) -> Result<Option<f64>, E>,
     ) -> Result<(), E> {
         let units = self.board().units;
-        let most = 1.0 / units.period;
+        let ticks = 1.0 / units.period;
+        let most = match self.address() {
+            Address::Serial { baud, .. } => ticks.min(torques_of_line(*baud)),
+            _ => ticks,
+        };
         // A rate of 1 / 0.001 s is 1000.0000000000001 Hz or less.
-        if !(rate > 0.0 && rate <= most * (1.0 + 1e-9)) {
-            return Err(StreamError::Rate { rate, most }.into());
+        if !(rate >= SLOWEST && rate <= most * (1.0 + 1e-9)) {
+            return Err(StreamError::Rate { rate, least: SLOWEST, most }.into());
         }
         if self.board().budget.is_none() {
             return Err(StreamError::NoHost { program: self.board().program.clone() }.into());
         }
-        let interval = Duration::from_secs_f64((1.0 / rate).min(QUERY.end.as_secs_f64()));
+        let interval = Duration::from_secs_f64(1.0 / rate);
         // The cast saturates.
-        let ramp = if is_smooth { (most / rate).round() as u16 } else { 0 };
+        let ramp = if is_smooth { (ticks / rate).round() as u16 } else { 0 };
         let wire = self.wire();
         let mut command = HostCommand { number: fastrand::u16(..), torque: 0.0, ramp };
         let streamed = carry(wire, &mut command, units, interval, &mut function);
@@ -103,14 +119,26 @@ fn carry<E: From<StreamError>>(
     interval: Duration,
     function: &mut impl FnMut(&StreamTick) -> Result<Option<f64>, E>,
 ) -> Result<(), E> {
-    let mut counts: Option<Counts> = None;
-    let mut next = Instant::now();
+    let (mut counts, mut sent) = (None::<Counts>, 0_u16);
+    let (mut next, mut heard) = (Instant::now(), Instant::now());
     loop {
         send(wire, *command).map_err(StreamError::from)?;
         next += interval;
-        let state = reported(wire, *command, next).map_err(StreamError::from)?;
+        sent = sent.saturating_add(1).min(UNDER_WAY);
+        let numbers = (command.number, sent);
+        let state = reported(wire, numbers, next).map_err(StreamError::from)?;
         // Late by more than an interval: it goes on from now and does not catch up.
         next = next.max(Instant::now());
+        command.number = command.number.wrapping_add(1);
+        let Some(state) = state else {
+            if heard.elapsed() >= QUERY.end {
+                let what = "the torque of a stream";
+                return Err(StreamError::from(wire.unanswered(what, QUERY.end)).into());
+            }
+            // Reports that take longer than an interval come at the rate of the commands.
+            continue;
+        };
+        heard = Instant::now();
         let counts = counts.get_or_insert(Counts { units, began: state.tick, count: 0 });
         let tick = counts.tick(&state);
         let Some(torque) = function(&tick)? else { return Ok(()) };
@@ -118,7 +146,6 @@ fn carry<E: From<StreamError>>(
         if !(torque as f32).is_finite() {
             return Err(StreamError::Torque { torque, time: tick.time }.into());
         }
-        command.number = command.number.wrapping_add(1);
         command.torque = torque as f32;
     }
 }
@@ -128,29 +155,21 @@ fn send(wire: &mut Wire, command: HostCommand) -> Result<(), LinkError> {
     wire.flush()
 }
 
-/// The last report of the time until the next command; that of the command itself at least, which is sent again
-/// if it gets lost.
-fn reported(wire: &mut Wire, command: HostCommand, next: Instant) -> Result<HostState, LinkError> {
-    let end = Instant::now() + QUERY.end;
-    let (mut last, mut again) = (None, Instant::now() + QUERY.again);
-    loop {
-        let until = if last.is_some() { next } else { again };
-        match wire.next(until)? {
-            Some(Event::Host(state)) if state.number == command.number => last = Some(state),
-            Some(Event::Lost(_)) => return Err(wire.restarted()),
-            Some(_) => {}
-            None if Instant::now() >= end => {
-                return Err(wire.unanswered("the torque of a stream", QUERY.end));
-            }
-            None => match last {
-                Some(state) => return Ok(state),
-                None => {
-                    again = Instant::now() + QUERY.again;
-                    send(wire, command)?;
-                }
-            },
+/// The last report until the next command, if there is one, of a command among so many up to a number.
+fn reported(
+    wire: &mut Wire,
+    (number, sent): (u16, u16),
+    next: Instant,
+) -> Result<Option<HostState>, LinkError> {
+    let mut last = None;
+    while let Some(event) = wire.next(next)? {
+        match event {
+            Event::Host(state) if number.wrapping_sub(state.number) < sent => last = Some(state),
+            Event::Lost(_) => return Err(wire.restarted()),
+            _ => {}
         }
     }
+    Ok(last)
 }
 
 impl Counts {
@@ -167,5 +186,15 @@ impl Counts {
             limit: state.limit,
             state: state.state,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_carries_a_report_for_each_torque() {
+        assert_eq!([115_200, 460_800].map(torques_of_line), [267.0, 1071.0]);
     }
 }

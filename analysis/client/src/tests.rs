@@ -1,10 +1,11 @@
 //! The client with a simulated board, and with ports that are no board.
 
+use std::collections::VecDeque;
 use std::io::{Read, Write};
 use std::net::TcpListener;
 use std::num::NonZeroU32;
 use std::thread::{self, JoinHandle};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use haptic_model::file::{Format, parse};
 use haptic_servo::host::HostTorque;
@@ -201,21 +202,24 @@ fn a_board_of_another_version_is_not_used() {
 }
 
 /// A board that takes torques, and moves by 0.1 rad in each tick of 1 ms that takes a torque. It is gone after
-/// so many, and returns them.
-fn streamed(ticks: usize) -> (Link, JoinHandle<Vec<f32>>) {
+/// so many, and returns them. It answers each after that number of further ones.
+fn streamed(ticks: usize, late: usize) -> (Link, JoinHandle<Vec<f32>>) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = Address::Tcp(listener.local_addr().unwrap().to_string());
     let thread = thread::spawn(move || {
         let (mut stream, _) = listener.accept().unwrap();
         let mut decoder = Decoder::<{ LONGEST_TO_BOARD + CHECKSUM }>::new();
-        let mut torques = Vec::new();
+        let (mut torques, mut waiting) = (Vec::new(), VecDeque::new());
         while torques.len() < ticks {
             let mut byte = [0];
             if stream.read_exact(&mut byte).is_err() {
                 break;
             }
-            for message in
-                decoder.push(byte[0]).iter().flat_map(|asked| answers(asked, &mut torques))
+            let Some(asked) = decoder.push(byte[0]) else { continue };
+            let late = if matches!(asked, ToBoard::Host(_)) { late } else { 0 };
+            waiting.extend(answers(&asked, &mut torques));
+            while waiting.len() > late
+                && let Some(message) = waiting.pop_front()
             {
                 let mut buffer = [0; 128];
                 stream.write_all(encode(&message, &mut buffer).unwrap()).unwrap();
@@ -263,6 +267,9 @@ fn answers(asked: &ToBoard, torques: &mut Vec<f32>) -> Vec<ToHost<&'static str>>
     }
 }
 
+/// So slow in Hz that an answer comes before the next command.
+const RATE: f64 = 20.0;
+
 /// The times and torques of a stream until 5 ms.
 fn until_5_ms(torque: f64) -> impl FnMut(&StreamTick) -> Result<Option<f64>, StreamError> {
     move |tick| Ok((tick.time < 4.5e-3).then_some(torque))
@@ -270,10 +277,10 @@ fn until_5_ms(torque: f64) -> impl FnMut(&StreamTick) -> Result<Option<f64>, Str
 
 #[test]
 fn a_stream_gets_the_motion_and_ends_at_zero() {
-    let (mut link, board) = streamed(usize::MAX);
+    let (mut link, board) = streamed(usize::MAX, 0);
     let mut ticks = Vec::new();
     let mut torque = until_5_ms(0.25);
-    let streamed = link.stream(1000.0, true, |tick| {
+    let streamed = link.stream(RATE, true, |tick| {
         ticks.push(*tick);
         torque(tick)
     });
@@ -287,15 +294,32 @@ fn a_stream_gets_the_motion_and_ends_at_zero() {
     assert_eq!(board.join().unwrap(), [0.0, 0.25, 0.25, 0.25, 0.25, 0.25, 0.0]);
 }
 
+/// As on a serial line, where a command, its tick and its report take more than the period of a stream at 1 kHz.
+#[test]
+fn a_stream_keeps_its_rate_where_answers_are_late() {
+    let (mut link, board) = streamed(usize::MAX, 3);
+    let (mut calls, began) = (0, Instant::now());
+    let streamed = link.stream(100.0, true, |_| {
+        calls += 1;
+        Ok::<_, StreamError>((calls < 50).then_some(0.1))
+    });
+    streamed.unwrap();
+    let took = began.elapsed();
+    drop(link);
+    board.join().unwrap();
+    // Waiting for each answer, three further commands late, would take four times as long.
+    assert!(took < Duration::from_millis(1200), "{took:?}");
+}
+
 #[test]
 fn a_stream_that_fails_switches_its_torque_off() {
     for wrong in [f64::NAN, f64::INFINITY, 1e300] {
-        let (mut link, board) = streamed(usize::MAX);
+        let (mut link, board) = streamed(usize::MAX, 0);
         let wrong_at_2_ms = |tick: &StreamTick| {
             Ok::<_, StreamError>(Some(if tick.time < 1.5e-3 { 0.1 } else { wrong }))
         };
-        let error = link.stream(1000.0, false, wrong_at_2_ms).unwrap_err().to_string();
-        assert!(error.contains(&format!("a torque of {wrong} N m at 0.002 s")), "{error}");
+        let error = link.stream(RATE, false, wrong_at_2_ms).unwrap_err().to_string();
+        assert!(error.contains(&format!("a torque of {wrong:?} N m at 0.002 s")), "{error}");
         drop(link);
         assert_eq!(board.join().unwrap(), [0.0, 0.1, 0.1, 0.0]);
     }
@@ -303,13 +327,13 @@ fn a_stream_that_fails_switches_its_torque_off() {
 
 #[test]
 fn a_stream_without_a_board_or_a_rate_has_a_reason() {
-    let (mut link, board) = streamed(3);
+    let (mut link, board) = streamed(3, 0);
     let lost = link.stream(1000.0, true, until_5_ms(0.1)).unwrap_err();
     assert!(matches!(lost, StreamError::Link(LinkError::Lost { .. })), "{lost}");
     board.join().unwrap();
-    for rate in [0.0, -1.0, f64::NAN, 1001.0] {
+    for rate in [0.0, -1.0, f64::NAN, 1e-300, 1001.0] {
         let error = link.stream(rate, true, until_5_ms(0.1)).unwrap_err().to_string();
-        assert!(error.contains(&format!("{rate} Hz; it must be above 0 and at most")), "{error}");
+        assert!(error.contains(&format!("{rate} Hz; it must be from 0.5 to 1000 Hz")), "{error}");
     }
     let board = self::board(20.0).unwrap();
     let mut link = Link::open(board.address()).unwrap();

@@ -7,7 +7,7 @@ use haptic_servo::host::{HostError, HostResponse, HostTorque, Sampling};
 use haptic_servo::servo::Transducers;
 
 use crate::file::SceneFile;
-use crate::quantity::rounded_down;
+use crate::quantity::{rounded_down, significant};
 
 /// Checks the host of a file against the margins of its certified scene.
 pub fn check(
@@ -35,7 +35,7 @@ pub fn sampling(file: &SceneFile) -> Sampling {
 
 /// What the host may do.
 pub fn budget(host: &HostTorque) -> String {
-    let HostTorque { energy, power, .. } = host;
+    let [energy, power] = [host.energy, host.power].map(|value| significant(value, 12));
     format!("{energy} J at once and {power} W on average, whatever it sends")
 }
 

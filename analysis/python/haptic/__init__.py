@@ -22,7 +22,17 @@ from numpy.typing import ArrayLike, NDArray
 from . import _native
 from ._native import SceneError
 from ._scene import Scene, plain, source
-from .board import LIMITS, STATES, Board, Parameters, SimulatedBoard, Telemetry, connect, simulated_board
+from .board import (
+    LIMITS,
+    STATES,
+    Board,
+    Parameters,
+    SimulatedBoard,
+    Streamed,
+    Telemetry,
+    connect,
+    simulated_board,
+)
 from .errors import (
     BoardError,
     ConnectError,
@@ -51,6 +61,7 @@ __all__ = [
     "SceneError",
     "SimulatedBoard",
     "StreamError",
+    "Streamed",
     "Telemetry",
     "VersionError",
     "certify",

@@ -41,7 +41,7 @@ class Connection:
         rate: float,
         duration: float,
         smooth: bool,
-    ) -> None: ...
+    ) -> dict[str, bytearray]: ...
 
 class Simulated:
     port: str

@@ -38,6 +38,27 @@ class Telemetry(TypedDict):
     """Time in s that was left of the period."""
 
 
+class Streamed(TypedDict):
+    """What became of the torques of a stream, a value for each call of its function."""
+
+    time: NDArray[np.float64]
+    """Time in s since the beginning."""
+    position: NDArray[np.float64]
+    """Angle in rad."""
+    velocity: NDArray[np.float64]
+    """Velocity in rad/s."""
+    torque: NDArray[np.float64]
+    """Torque in N m that the board gave of the call before."""
+    refused: NDArray[np.float64]
+    """Torque in N m that it did not give of that."""
+    energy: NDArray[np.float64]
+    """Energy in J that the budget had left."""
+    limit: NDArray[np.str_]
+    """Why it was refused, one of LIMITS: ``energy`` where the budget was spent."""
+    state: NDArray[np.str_]
+    """State of the servo, one of STATES: it gives none unless it runs."""
+
+
 class Parameters(MutableMapping[str, float]):
     """The parameters that run on a board, by name, in SI units.
 
@@ -70,13 +91,9 @@ class Parameters(MutableMapping[str, float]):
 
     def update(self, *changes: Mapping[str, float], **named: float) -> None:  # type: ignore[override]
         """Change parameters together, all or none, and wait until they run."""
-        together = dict(*changes, **named)
-        for name, value in together.items():
-            if isinstance(value, bool) or not isinstance(value, (int, float, np.number)):
-                kind = type(value).__name__
-                raise ParameterError(f"`{name}` = {value!r} is a {kind}; it must be a number")
+        together = [(name, _number(name, value)) for name, value in dict(*changes, **named).items()]
         if together:
-            self._connection.set([(name, float(value)) for name, value in together.items()])
+            self._connection.set(together)
 
     def __repr__(self) -> str:
         return repr(dict(self._connection.parameters()))
@@ -137,7 +154,7 @@ class Board:
         """Record for some seconds: every n-th tick, by default as many as a serial line carries."""
         if every is not None and not 1 <= every < 2**32:
             raise ParameterError(f"`every` = {every} is out of bounds; it must be from 1 to {2**32 - 1}")
-        found = self._connection.telemetry(seconds, every or 0)
+        found = self._connection.telemetry(_number("seconds", seconds), every or 0)
         return {
             "tick": np.frombuffer(found["tick"]).astype(np.int64),
             "time": np.frombuffer(found["time"]),
@@ -155,18 +172,32 @@ class Board:
         *,
         duration: float = float("inf"),
         smooth: bool = True,
-    ) -> None:
+    ) -> Streamed:
         """Drive the motor with the torques that a function returns, ``rate`` times a second.
 
         ``function(position, velocity, time)`` gets rad, rad/s and s since the beginning, and returns a torque
         in N m, positive towards positive angles. The board adds it to the torque of its scene, within the
-        energy budget of its program. With ``smooth`` it moves along a line from torque to torque.
+        energy budget of its program, and at most ``host.torque`` of it. With ``smooth`` it moves along a line
+        from torque to torque.
 
         It ends after ``duration`` seconds, at an exception of the function, which is raised again, and at a
         torque that is not finite (:class:`StreamError`); the torque is then zero. If this program hangs, the
-        board fades the torque out by itself.
+        board fades the torque out by itself. No other call of this connection is possible meanwhile.
         """
-        self._connection.stream(function, float(rate), float(duration), smooth)
+        rate, duration = _number("rate", rate), _number("duration", duration)
+        if not duration >= 0.0:
+            raise ParameterError(f"`duration` = {duration} is out of bounds; it must be a number of seconds from 0")
+        found = self._connection.stream(function, rate, duration, smooth)
+        return {
+            "time": np.frombuffer(found["time"]),
+            "position": np.frombuffer(found["position"]),
+            "velocity": np.frombuffer(found["velocity"]),
+            "torque": np.frombuffer(found["torque"]),
+            "refused": np.frombuffer(found["refused"]),
+            "energy": np.frombuffer(found["energy"]),
+            "limit": np.array(LIMITS)[np.frombuffer(found["limit"], np.uint8)],
+            "state": np.array(STATES)[np.frombuffer(found["state"], np.uint8)],
+        }
 
 
 class SimulatedBoard:
@@ -207,3 +238,12 @@ def simulated_board(scene: Scene) -> SimulatedBoard:
     raises :class:`SceneError`. Encoder and motor are those of the scene, or the defaults of a simulation.
     """
     return SimulatedBoard(scene)
+
+
+def _number(name: str, value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float, np.number)):
+        raise ParameterError(f"`{name}` = {value!r} is a {type(value).__name__}; it must be a number")
+    try:
+        return float(value)
+    except OverflowError:
+        raise ParameterError(f"`{name}` is out of bounds; it must be a finite number") from None

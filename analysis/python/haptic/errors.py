@@ -29,4 +29,4 @@ class ParameterError(BoardError, KeyError):
 
 
 class StreamError(BoardError):
-    """A stream of torques that did not begin or was ended, because of its rate or a torque."""
+    """A stream of torques that did not begin or was ended, because of its rate or a torque; or that still runs."""

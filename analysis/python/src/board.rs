@@ -1,7 +1,8 @@
 //! A board behind a port, and a simulated board. `haptic/board.py` makes mappings and arrays of them.
 
 use std::num::NonZeroU32;
-use std::sync::{Mutex, PoisonError};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
 use std::time::Duration;
 
 use haptic_client::simulated::{self, Pacing, SimulatedBoardError};
@@ -12,6 +13,7 @@ use haptic_model::board::sample::Sample;
 use haptic_model::board::timing::stream_every;
 use haptic_model::board::{Report, budget, formatting};
 use haptic_model::file::Purpose;
+use haptic_model::quantity::shortened;
 use haptic_servo::servo_loop::State;
 use haptic_servo::torque::LimitReason;
 use pyo3::prelude::*;
@@ -49,6 +51,11 @@ pub enum BoardFailure {
     Refused(String),
     #[error("the connection to the board is closed: connect again")]
     Closed,
+    #[error(
+        "a stream runs on this connection: its function gets the motion, and other calls have to wait until it \
+         has ended"
+    )]
+    Streams,
     #[error(transparent)]
     Python(#[from] PyErr),
 }
@@ -67,7 +74,9 @@ impl From<BoardFailure> for PyErr {
                     _ => errors::ConnectError::new_err(sentence),
                 }
             }
-            BoardFailure::Stream(_) => errors::StreamError::new_err(sentence),
+            BoardFailure::Stream(_) | BoardFailure::Streams => {
+                errors::StreamError::new_err(sentence)
+            }
             BoardFailure::Address(_) => errors::ConnectError::new_err(sentence),
             BoardFailure::Parameter(_) => errors::ParameterError::new_err(sentence),
             BoardFailure::Refused(_) => errors::RefusedError::new_err(sentence),
@@ -88,7 +97,11 @@ pub fn limits() -> Vec<&'static str> {
 
 /// A connection to a board, until it is closed.
 #[pyclass(frozen)]
-pub struct Connection(Mutex<Option<Link>>);
+pub struct Connection {
+    link: Mutex<Option<Link>>,
+    /// Whether a stream has the link: it may never end, and its function may call the board.
+    streams: AtomicBool,
+}
 
 impl Connection {
     /// Uses the link while other threads of Python run.
@@ -97,11 +110,17 @@ impl Connection {
         py: Python<'_>,
         of: impl FnOnce(&mut Link) -> Result<T, BoardFailure> + Send,
     ) -> Result<T, BoardFailure> {
-        py.detach(|| {
-            // A link is valid after a panic, too.
-            let mut link = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-            of(link.as_mut().ok_or(BoardFailure::Closed)?)
-        })
+        py.detach(|| of(self.lock()?.as_mut().ok_or(BoardFailure::Closed)?))
+    }
+
+    fn lock(&self) -> Result<MutexGuard<'_, Option<Link>>, BoardFailure> {
+        // A link is valid after a panic, too.
+        match self.link.try_lock() {
+            Ok(link) => Ok(link),
+            Err(TryLockError::Poisoned(link)) => Ok(link.into_inner()),
+            Err(_) if self.streams.load(Ordering::Relaxed) => Err(BoardFailure::Streams),
+            Err(_) => Ok(self.link.lock().unwrap_or_else(PoisonError::into_inner)),
+        }
     }
 
     fn ask(&self, py: Python<'_>, request: Request) -> Result<(), BoardFailure> {
@@ -120,11 +139,11 @@ impl Connection {
     fn open(py: Python<'_>, port: &str) -> Result<Self, BoardFailure> {
         let address: Address = port.parse().map_err(BoardFailure::Address)?;
         let link = py.detach(|| Link::open(&address))?;
-        Ok(Self(Mutex::new(Some(link))))
+        Ok(Self { link: Mutex::new(Some(link)), streams: AtomicBool::new(false) })
     }
 
-    fn close(&self, py: Python<'_>) {
-        py.detach(|| *self.0.lock().unwrap_or_else(PoisonError::into_inner) = None);
+    fn close(&self, py: Python<'_>) -> Result<(), BoardFailure> {
+        py.detach(|| Ok(*self.lock()? = None))
     }
 
     /// Name of the program, and the period of its servo in s.
@@ -210,43 +229,40 @@ impl Connection {
             signal?;
             Ok(samples)
         })?;
-        let columns = PyDict::new(py);
-        let number = |name, of: fn(&Sample) -> f64| {
-            let numbers: Vec<f64> = samples.iter().map(of).collect();
-            columns.set_item(name, arrays::to_python(py, &numbers)?)
-        };
-        number("tick", |sample| sample.tick as f64)?;
-        number("time", |sample| sample.time)?;
-        number("position", |sample| sample.position)?;
-        number("torque", |sample| sample.torque)?;
-        number("slack", |sample| sample.slack)?;
-        let code = |name, of: fn(&Sample) -> u8| {
-            let codes: Vec<u8> = samples.iter().map(of).collect();
-            columns.set_item(name, PyByteArray::new(py, &codes))
-        };
-        code("state", |sample| sample.state as u8)?;
-        code("limit", |sample| sample.limit as u8)?;
-        Ok(columns)
+        let columns = Columns { py, rows: &samples, columns: PyDict::new(py) };
+        columns.numbers("tick", |sample| sample.tick as f64)?;
+        columns.numbers("time", |sample| sample.time)?;
+        columns.numbers("position", |sample| sample.position)?;
+        columns.numbers("torque", |sample| sample.torque)?;
+        columns.numbers("slack", |sample| sample.slack)?;
+        columns.codes("state", |sample| sample.state as u8)?;
+        columns.codes("limit", |sample| sample.limit as u8)?;
+        Ok(columns.columns)
     }
 
-    /// Streams the torques that a function returns for position, velocity and time.
-    fn stream(
+    /// Streams the torques that a function returns for position, velocity and time. Returns columns of what became
+    /// of them, or none of a stream without an end.
+    fn stream<'py>(
         &self,
-        py: Python<'_>,
+        py: Python<'py>,
         function: Py<PyAny>,
         rate: f64,
         duration: f64,
         smooth: bool,
-    ) -> Result<(), BoardFailure> {
+    ) -> Result<Bound<'py, PyDict>, BoardFailure> {
+        let mut ticks = Vec::new();
         let torque = |tick: &StreamTick| {
             if tick.time >= duration {
                 return Ok(None);
+            }
+            if duration.is_finite() {
+                ticks.push(*tick);
             }
             Python::attach(|py| {
                 py.check_signals()?;
                 let returned = function.call1(py, (tick.position, tick.velocity, tick.time))?;
                 returned.extract::<f64>(py).map(Some).map_err(|_| {
-                    let StreamTick { time, .. } = tick;
+                    let (returned, time) = (shortened(&returned.to_string(), 60), tick.time);
                     BoardFailure::Python(errors::StreamError::new_err(format!(
                         "the function returned {returned} at {time} s; it must be a torque in N m. The \
                          torque is switched off"
@@ -254,7 +270,41 @@ impl Connection {
                 })
             })
         };
-        self.with(py, |link| link.stream(rate, smooth, torque))
+        self.with(py, |link| {
+            self.streams.store(true, Ordering::Relaxed);
+            let streamed = link.stream(rate, smooth, torque);
+            self.streams.store(false, Ordering::Relaxed);
+            streamed
+        })?;
+        let columns = Columns { py, rows: &ticks, columns: PyDict::new(py) };
+        columns.numbers("time", |tick| tick.time)?;
+        columns.numbers("position", |tick| tick.position)?;
+        columns.numbers("velocity", |tick| tick.velocity)?;
+        columns.numbers("torque", |tick| tick.torque)?;
+        columns.numbers("refused", |tick| tick.refused)?;
+        columns.numbers("energy", |tick| tick.energy)?;
+        columns.codes("limit", |tick| tick.limit as u8)?;
+        columns.codes("state", |tick| tick.state as u8)?;
+        Ok(columns.columns)
+    }
+}
+
+/// Rows as columns for NumPy.
+struct Columns<'py, 'r, T> {
+    py: Python<'py>,
+    rows: &'r [T],
+    columns: Bound<'py, PyDict>,
+}
+
+impl<T> Columns<'_, '_, T> {
+    fn numbers(&self, name: &str, of: fn(&T) -> f64) -> PyResult<()> {
+        let numbers: Vec<f64> = self.rows.iter().map(of).collect();
+        self.columns.set_item(name, arrays::to_python(self.py, &numbers)?)
+    }
+
+    fn codes(&self, name: &str, of: fn(&T) -> u8) -> PyResult<()> {
+        let codes: Vec<u8> = self.rows.iter().map(of).collect();
+        self.columns.set_item(name, PyByteArray::new(self.py, &codes))
     }
 }
 

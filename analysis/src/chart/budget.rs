@@ -64,13 +64,17 @@ impl BudgetRuns {
         let Some(last) = with.last() else { return Err(ChartError::TooFewPoints) };
         let most = self.runs.each_ref().map(|run| {
             let most = run.host.as_ref().map_or(0.0, |host| host.most().0);
-            format!("at most {} % of it", significant(100.0 * most, 3))
+            format!("at most {} % of the budget", significant(100.0 * most, 3))
         });
+        let budget = self.runs[0].host.as_ref().map(|host| host.budget);
+        let [energy, power] = budget.map_or([0.0; 2], |host| [host.energy, host.power]);
+        let [energy, power] = [energy, power].map(|value| significant(value, 3));
+        // Each line of a tank is that of both panels.
         let entries = vec![
-            (Sample::Line(BUDGET), "budget".to_owned()),
-            (Sample::Line(WITH), format!("taken with the tank: {}", most[0])),
-            (Sample::Line(WITHOUT), format!("taken without the tank: {}", most[1])),
-            (Sample::Line(HAND), "set-point of the hand, until it lets go".to_owned()),
+            (Sample::Line(BUDGET), format!("budget: {energy} J at once and {power} W")),
+            (Sample::Line(WITH), format!("with the tank: {}", most[0])),
+            (Sample::Line(HAND), "angle that the hand wants, until it lets go".to_owned()),
+            (Sample::Line(WITHOUT), format!("without the tank: {}", most[1])),
         ];
         let legends = vec![Legend::new(2, entries)];
         Page { title, width: WIDTH, heights: &PANELS, legends }.draw(|areas| {

@@ -22,7 +22,7 @@ use crate::lockstep::SimulatedDevice;
 use crate::program::{self, Program, damper_wall};
 use crate::progress;
 use crate::quantity::significant;
-use crate::studies::bench::figure::{Budget, Figure, Pair};
+use crate::studies::bench::figure::{Bounds, Budget, Figure, Pair};
 use crate::studies::bench::on_target::{self, live_set};
 use crate::studies::bench::python::{JUDGES, PythonPeers, SIMULATOR};
 use crate::studies::bench::steps::{in_c, step_time, steps_beside};
@@ -53,20 +53,20 @@ impl Arguments {
 }
 
 /// Of a verdict on one core, with a lagging torque, and for a torque profile of 64 knots.
-const VERDICT: Budget = Budget { value: 20.0, unit: "us", source: "budget, one core" };
+const VERDICT: Budget = Budget { source: "budget, one core", ..Budget::of(20.0, "us") };
 const LAGGING: Budget = Budget { value: 15.0, ..VERDICT };
 const PROFILE: Budget = Budget { value: 5.0, ..VERDICT };
 /// Of a step of the exact simulation on one core.
-const STEP: Budget = Budget { value: 10.0, unit: "ns", source: "budget, 100 M steps/s" };
+const STEP: Budget = Budget { source: "budget, 100 M steps/s", ..Budget::of(10.0, "ns") };
 /// Of the part of the passivity that a jitter of a hundredth of a period leaves, at least.
-const JITTER: Budget = Budget { value: 0.98, unit: "of delta", source: "budget, at least" };
+const JITTER: Budget = at_least(0.98, "of delta", "budget, at least");
 /// Of the number of walls per second in a map.
-const MAP: Budget = Budget { value: 1e5, unit: "1/s", source: "budget, a million in 10 s" };
+const MAP: Budget = at_least(1e5, "1/s", "budget, a million in 10 s");
 /// Of the time that a certificate may add to a compilation.
 const COMPILATION: Budget = Budget::of(50.0, "ms");
 /// Of a certificate on the target.
 const CERTIFICATE: Budget =
-    Budget { value: 3.4e6, unit: "instructions", source: "budget, 20 ms at 170 MHz" };
+    Budget { source: "budget, 20 ms at 170 MHz", ..Budget::of(3.4e6, "instructions") };
 /// Of the servo's whole interrupt, including the accesses to encoder and DAC.
 const INTERRUPT: Budget = Budget::of(150.0, "instructions");
 /// Of the servo's share of a core.
@@ -92,7 +92,11 @@ const HOST: &str =
 /// Of what a magnetic encoder adds to the servo's interrupt.
 const READING: Budget = Budget::of(15.0, "instructions");
 /// Of the free bytes of a motor board's flash with a wall on its bridge.
-const FLASH_LEFT: Budget = Budget { value: 40.0 * 1024.0, unit: "bytes", source: "at least" };
+const FLASH_LEFT: Budget = at_least(40.0 * 1024.0, "bytes", "at least");
+
+const fn at_least(value: f64, unit: &'static str, source: &'static str) -> Budget {
+    Budget { value, unit, source, bounds: Bounds::AtLeast }
+}
 
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let figures = match arguments {
@@ -217,11 +221,8 @@ fn about_bridges(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<(),
         let name = format!("current loop, {motor} motor");
         let instant = format!("{name}: instant, sample to compare values, most");
         figures.push(Figure::within(instant, most, &budget));
-        let both = Budget {
-            value: on_target::share_of_core(budget.value, INTERRUPT.value),
-            unit: "%",
-            source: "the same of both budgets",
-        };
+        let value = on_target::share_of_core(budget.value, INTERRUPT.value);
+        let both = Budget { source: "the same of both budgets", ..Budget::of(value, "%") };
         let share = format!("{name}, at 40 kHz with a servo at 10 kHz: of 170 M instructions/s");
         figures.push(Figure::within(share, on_target::share_of_core(most, servo), &both));
     }
@@ -231,7 +232,7 @@ fn about_bridges(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<(),
     spinner.finish_and_clear();
     if let Some(program) = built.first() {
         let (flash, value) = (program.sizes.flash() as f64, board.flash() as f64);
-        let all = Budget { value, unit: "bytes", source: "the board's flash" };
+        let all = Budget { source: "the board's flash", ..Budget::of(value, "bytes") };
         figures.push(Figure::within(format!("{name}, {board}: flash"), flash, &all));
         let left = format!("{name}, {board}: flash left");
         figures.push(Figure::within(left, value - flash, &FLASH_LEFT));
@@ -475,6 +476,9 @@ fn table(figures: &[Figure]) -> Table {
             ("unit", false, |figure| figure.unit.to_owned()),
             ("against", true, |figure| number(figure.against)),
             ("ratio", true, |figure| number(figure.ratio)),
+            ("met", false, |figure| {
+                figure.met.map_or("", |met| if met { "yes" } else { "MISSED" }).to_owned()
+            }),
             ("against what", false, |figure| figure.source.clone()),
         ],
     )

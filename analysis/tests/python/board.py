@@ -103,8 +103,12 @@ def is_lost():
 def streams():
     with haptic.simulated_board(SCENE) as simulated, haptic.connect(simulated.port) as board:
         refuses(haptic.StreamError, "the rate of a stream is 0 Hz; ", lambda: board.stream(abs, 0))
-        refuses(haptic.StreamError, "at most 1000 Hz", lambda: board.stream(abs, math.nan))
+        refuses(haptic.StreamError, "to 1000 Hz", lambda: board.stream(abs, math.nan))
         refuses(haptic.StreamError, "wall takes no torque from a host", lambda: board.stream(abs, 100))
+        for wrong in ["fast", None, True]:
+            refuses(haptic.ParameterError, "it must be a number", lambda: board.stream(abs, wrong))
+        for wrong in [math.nan, -1]:
+            refuses(haptic.ParameterError, "number of seconds", lambda: board.stream(abs, 100, duration=wrong))
     seen = []
 
     def spring(position, velocity, time):
@@ -115,7 +119,7 @@ def streams():
         raise ZeroDivisionError("of the function")
 
     with HostBoard() as hosted, haptic.connect(hosted.port) as board:
-        board.stream(spring, rate=500.0, duration=0.01)
+        board.stream(spring, rate=50.0, duration=0.01)
         assert [round(time, 9) for _, _, time in seen] == [round(0.001 * tick, 9) for tick in range(10)]
         assert np.allclose([position for position, _, _ in seen], 0.1 * np.arange(1, 11))
         hosted.wait_for(12)
@@ -123,12 +127,14 @@ def streams():
         for function, kind, words in [
             (lambda *_: math.nan, haptic.StreamError, "the function returned a torque of NaN N m at "),
             (lambda *_: None, haptic.StreamError, "the function returned None at "),
+            (lambda *_: board.status(), haptic.StreamError, "a stream runs on this connection"),
+            (lambda *_: board.close(), haptic.StreamError, "a stream runs on this connection"),
             (fails, ZeroDivisionError, "of the function"),
             (lambda: 0.0, TypeError, "takes 0 positional arguments"),
         ]:
             hosted.torques.clear()
             try:
-                board.stream(function, 1000.0)
+                board.stream(function, 50.0)
             except Exception as error:
                 assert type(error) is kind and words in str(error), (words, repr(error))
             else:
@@ -160,6 +166,11 @@ def pushes():
         moved = np.mean(sides[1]) - np.mean(sides[-1])
         assert len(sides[1]) > 100 and 0.05 < moved < 0.11, (len(sides[1]), moved)
         refuses(haptic.StreamError, "returned a torque of NaN", lambda: board.stream(lambda *_: math.nan, 100))
+        pumped = board.stream(lambda _, velocity, time: math.copysign(0.5, velocity), 200, duration=1.0)
+        assert len({len(column) for column in pumped.values()}) == 1 and set(pumped["state"]) == {"running"}
+        limited = pumped["limit"] == "energy"
+        assert limited.any() and (np.abs(pumped["refused"][limited]) > 0.0).all(), pumped
+        assert 0.0 <= pumped["energy"].min() < 0.04 and np.abs(pumped["torque"]).max() < 0.501, pumped
         refuses(haptic.RefusedError, "share of damping", lambda: board.parameters.update(stiffness=10, damping=0.01))
         assert board.status()["state"] == "running"
         board.disarm()

@@ -111,6 +111,9 @@ impl HostResponse {
         ok!(host.check());
         ok!(covered(latency, sampling));
         let period = sampling.period;
+        if host.timeout < 2.0 * period {
+            return Err(HostError::Timeout { timeout: host.timeout, least: 2.0 * period });
+        }
         let delay = in_periods(latency, period);
         let whole = delay.midpoint() as usize;
         let part = delay.sub(Interval::exact(whole as f64)).midpoint();
@@ -143,6 +146,12 @@ impl HostResponse {
         let squared = if of_lag == 0.0 { 0.0 } else { 0.5 * of_lag / (1.0 - a) };
         let last = if of_lag == 0.0 { 0.0 } else { of_lag };
         let over = 1.0 - part;
+        let square = held - unspread;
+        let square_left = if MAY_BE_OLD && latency.is_between_updates() {
+            lag.square_left(latency.actuator_updates).midpoint()
+        } else {
+            square * rest * rest
+        };
         let first = [over - held * (1.0 - rest), held * (1.0 - rest)];
         let total = [1.0 - held * (1.0 - a), held * (1.0 - a)];
         let response = Self {
@@ -159,7 +168,7 @@ impl HostResponse {
             first,
             second: [total[0] - first[0], total[1] - first[1]],
             is_late: part > 0.0,
-            unfinished: [part, 2.0 * held * (rest - a), (held - unspread) * (rest * rest - a * a)],
+            unfinished: [part, 2.0 * held * (rest - a), square_left - square * a * a],
             step_price: 0.0,
             reserve: TankNumbers::of_counts(sampling),
         };
@@ -192,9 +201,6 @@ impl HostResponse {
         let code = servo.full_scale / DacCode::CODES_TO_FULL_SCALE as f64;
         let sampling = Sampling { period, worst_period, count, code, ticks, reading };
         let mut response = ok!(Self::of(host, servo.latency, &sampling));
-        if host.timeout < 2.0 * period {
-            return Err(HostError::Timeout { timeout: host.timeout, least: 2.0 * period });
-        }
         if times.is_plain {
             response = ok!(response.without_memory(host));
         }
@@ -230,6 +236,9 @@ impl HostResponse {
     }
 }
 
+/// Whether an encoder may answer after the instant of its position: a program without a chip has no code for it.
+const MAY_BE_OLD: bool = cfg!(any(not(target_os = "none"), feature = "magnetic"));
+
 const fn covered(latency: &Latency, sampling: &Sampling) -> Result<(), HostError> {
     let time = if or!(sampling.worst_period, sampling.period) != sampling.period {
         "updates that may be missed"
@@ -241,7 +250,7 @@ const fn covered(latency: &Latency, sampling: &Sampling) -> Result<(), HostError
         "readings that may be dropped"
     } else if !latency.actuator_response.is_zero() {
         "an amplifier whose step response is only known to rise between two times"
-    } else if latency.is_between_updates() {
+    } else if !MAY_BE_OLD && latency.is_between_updates() {
         "an amplifier that is updated several times in a period beside readings with an age"
     } else if latency.actuator_updates > 0 && latency.delay_in_updates(sampling.period).is_none() {
         "an output delay that is no whole number of the amplifier's updates"
@@ -266,7 +275,7 @@ const fn decay(latency: &Latency, period: f64, part: f64) -> Decay {
     let over = Interval::exact(1.0 - part);
     match latency.actuator_updates {
         0 => Decay::of(tau, over),
-        updates => Decay::sampled(tau, over, updates, false),
+        updates => Decay::sampled(tau, over, updates, MAY_BE_OLD && latency.is_between_updates()),
     }
 }
 
@@ -277,8 +286,9 @@ const fn decay(latency: &Latency, period: f64, part: f64) -> Decay {
 /// the roots of their energies add.
 const fn deviations(latency: &Latency, sampling: &Sampling) -> (f64, f64) {
     let range = 0.5 * (latency.output_delay.most - latency.output_delay.least);
-    // With one jitter alone it is of the counts or of the torques, not of both.
-    let counts = latency.deviation_of_counts().max(sampling.reading);
+    // With one jitter alone it is of the counts or of the torques, not of both. An age that varies is a count's.
+    let reading = latency.deviation_of_counts().max(sampling.reading);
+    let counts = reading + latency.encoder.deviation_of_age();
     let torques = range + if latency.jitters_twice() { latency.output_jitter } else { 0.0 };
     let sum = torques + counts + 2.0 * root(torques * counts);
     (sum / sampling.period, counts / sampling.period)

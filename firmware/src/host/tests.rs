@@ -2,6 +2,7 @@
 
 mod reading;
 
+use crate::encoder_reading::EncoderReading;
 use crate::environment::{FixedDelay, VariableDelay};
 use crate::host::{HostError, HostResponse, HostTorque, Sampling, Tank};
 use crate::scene::{Latency, TimeRange};
@@ -74,7 +75,8 @@ impl Motor {
 
     fn updated(&mut self, command: f64) -> (f64, f64) {
         let length = PARTS / self.updates;
-        let place = (self.part - 1) % length;
+        let since = self.part as i64 - 1 - self.delay as i64;
+        let place = since.rem_euclid(length as i64) as usize;
         if place == 0 {
             let left = (-(length as f64) / self.lag).exp();
             self.update = (self.update.1, command + (self.update.1 - command) * left);
@@ -189,6 +191,12 @@ fn responses() -> Vec<(&'static str, Latency, usize, Motor)> {
         ("lag 0.4, delay 0.7", delayed(lagging(0.4), 42.0), 0, Motor::new(42, lag(0.4), 0)),
         ("updates", Latency::sampled(4, 0.3 * PERIOD, PERIOD), 1, Motor::new(15, lag(0.3), 4)),
         (
+            "updates, old readings",
+            Latency::sampled(4, 0.3 * PERIOD, PERIOD).read_by(&OLD),
+            1,
+            Motor::new(22, lag(0.3), 4),
+        ),
+        (
             "range of the lag, slowest",
             Latency {
                 actuator_lag: TimeRange::between(0.4 * PERIOD, 0.6 * PERIOD),
@@ -208,6 +216,12 @@ fn responses() -> Vec<(&'static str, Latency, usize, Motor)> {
         ),
     ]
 }
+
+/// Readings of the instant 7 parts before.
+const OLD: EncoderReading = EncoderReading {
+    age: TimeRange::exactly(7.0 / PARTS as f64 * PERIOD),
+    ..*EncoderReading::ideal()
+};
 
 /// The hand moves as the torque wants, which pays nothing back.
 fn greedy(mean: f64) -> f64 {
@@ -281,7 +295,7 @@ fn another_budget_gives_no_energy() {
     for run in 0..200_usize {
         let mut any = |least: f64| least * 10_f64.powf(1.5 + 1.5 * random.next());
         let next = HostTorque { energy: any(0.005), damping: any(0.0005), ..HOST };
-        let (name, latency, ticks, motor) = responses().swap_remove(run % 12);
+        let (name, latency, ticks, motor) = responses().swap_remove(run % 13);
         let mut hand = Random(run as u64);
         let attack = Attack {
             host: HOST,
@@ -304,7 +318,7 @@ fn counts_are_paid() {
     let mut random = Random(3);
     for run in 0..300_usize {
         let count = 10_f64.powf(-4.5 + 1.5 * random.next());
-        let (name, latency, ticks, motor) = responses().swap_remove(run % 10);
+        let (name, latency, ticks, motor) = responses().swap_remove(run % 11);
         // The energy must be above what counts can cost.
         let host = HostTorque { torque: 0.3, energy: 0.1, ..HOST };
         let sampling = Sampling { count, ticks, ..sampling() };
@@ -438,12 +452,15 @@ fn what_is_not_covered_is_refused() {
     let of = |latency: &Latency, sampling: &Sampling| {
         HostResponse::of(&HOST, latency, sampling).unwrap_err().to_string()
     };
+    const AGES: EncoderReading =
+        EncoderReading { age: TimeRange::between(0.0, 6e-4), ..*EncoderReading::ideal() };
     let lag = TimeRange::exactly(1e-4);
     let cases = [
         (of(&Latency::NONE, &Sampling { worst_period: Some(2e-3), ..sampling() }), "missed"),
         (of(&Latency { sensor_lag: lag, ..Latency::NONE }, &sampling()), "filter"),
         (of(&Latency::NONE.with_actuator_response(0.0, 1e-4), &sampling()), "step response"),
         (of(&Latency { output_jitter: 3e-4, ..Latency::NONE }, &sampling()), "jitter"),
+        (of(&Latency::NONE.read_by(&AGES), &sampling()), "jitter"),
         (of(&Latency::NONE, &Sampling { count: 0.03, ..sampling() }), "finer encoder"),
     ];
     for (sentence, part) in cases {

@@ -10,6 +10,9 @@ use crate::host::{HostTorque, Taken};
 use crate::servo_loop::State;
 use crate::torque::LimitReason;
 
+/// Bytes of the longest report of a torque on the line, with its frame.
+pub const LONGEST_REPORT: usize = 43;
+
 /// The torque that a host wants. The last command wins.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HostCommand {
@@ -113,7 +116,7 @@ mod tests {
             encode(&ToBoard::Host(HostRequest::Torque(command)), &mut buffer).unwrap().len();
         let report = ToHost::<&str>::Host(HostReport::State(state));
         let report = encode(&report, &mut buffer).unwrap().len();
-        assert_eq!((command, report), (19, 43));
+        assert_eq!((command, report), (19, LONGEST_REPORT));
         // A byte has ten bits on the line.
         assert!(report * 10 * 1000 <= BAUD as usize);
     }

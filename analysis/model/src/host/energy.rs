@@ -22,6 +22,8 @@ pub struct HostEnergy {
     /// Time constant of the amplifier in s, and its updates if it has some.
     lag: f64,
     updated: Option<SampledActuator>,
+    /// Time in s since its last update.
+    since: f64,
     /// Torques in N m that have not acted yet, the newest first.
     commands: VecDeque<f64>,
     /// The motor's torque in N m of the host.
@@ -34,12 +36,19 @@ impl HostEnergy {
     /// scene, with the middle of each time.
     pub fn new(host: &HostTorque, latency: &Latency, period: f64, ticks: usize) -> Self {
         let delay = latency.output_delay.middle() / period;
+        let (part, updated) = (delay.fract() * period, SampledActuator::of(latency, period));
+        // A torque begins with an update.
+        let since = updated.map_or(0.0, |amplifier| match amplifier.after_update(part) {
+            0.0 => 0.0,
+            first => amplifier.between() - first,
+        });
         Self {
             damping: host.damping,
             period,
-            part: delay.fract() * period,
+            part,
             lag: latency.actuator_lag.middle(),
-            updated: SampledActuator::of(latency, period),
+            updated,
+            since,
             commands: VecDeque::from(vec![0.0; ticks + delay as usize + 1]),
             torque: 0.0,
             taken: 0.0,
@@ -85,13 +94,18 @@ impl HostEnergy {
         command: f64,
         length: f64,
     ) -> [f64; 2] {
-        let (mut once, mut twice, step) = (0.0, 0.0, amplifier.between());
-        for _ in 0..amplifier.in_time(length) {
-            let from = self.torque;
-            let to = from + amplifier.slope(0.0) * step * (command - from);
+        let (mut once, mut twice, mut left) = (0.0, 0.0, length);
+        // Less than that is rounding.
+        let (between, rounding) = (amplifier.between(), 1e-9 * amplifier.between());
+        while left > rounding {
+            let (from, step) = (self.torque, left.min(between - self.since));
+            let to = from + amplifier.slope(self.since) * step * (command - from);
             once += 0.5 * (from + to) * step;
             twice += (from * from + from * to + to * to) / 3.0 * step;
-            self.torque = to;
+            (self.torque, self.since, left) = (to, self.since + step, left - step);
+            if between - self.since <= rounding {
+                self.since = 0.0;
+            }
         }
         [once, twice]
     }

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use haptic_servo::host::ServoNumbers;
-use haptic_servo::scene::{Latency, Scene};
+use haptic_servo::scene::{EncoderReading, Latency, Scene, TimeRange};
 use haptic_servo::servo::OutputTiming;
 
 use super::*;
@@ -82,6 +82,8 @@ fn a_hand_takes_no_more_than_the_budget_and_without_a_tank_it_does() {
 #[test]
 fn an_amplifier_that_lags_and_an_output_that_is_late_do_not_change_that() {
     let late = |delay, lag| Latency::delayed(delay).with_actuator_lag(lag);
+    const OLD: EncoderReading =
+        EncoderReading { age: TimeRange::exactly(6e-5), ..*EncoderReading::ideal() };
     for (latency, output) in [
         (late(0.0, 4e-4), OutputTiming::Latched),
         (late(0.0, 4e-4), OutputTiming::Simultaneous),
@@ -89,6 +91,7 @@ fn an_amplifier_that_lags_and_an_output_that_is_late_do_not_change_that() {
         (late(3e-4, 2e-4), OutputTiming::Simultaneous),
         // A board's own bridge.
         (Latency::sampled(4, 2e-4, 1e-3), OutputTiming::Latched),
+        (Latency::sampled(4, 2e-4, 1e-3).read_by(&OLD), OutputTiming::Latched),
     ] {
         let mut file = file();
         file.scene.latency = latency;

@@ -15,6 +15,8 @@ pub struct Figure {
     pub against: Option<f64>,
     /// `value / against` if both were measured in this run: below 1 is better for a cost.
     pub ratio: Option<f64>,
+    /// Whether it is within its budget; `None` without one.
+    pub met: Option<bool>,
     pub source: String,
 }
 
@@ -51,24 +53,37 @@ pub struct Budget {
     pub value: f64,
     pub unit: &'static str,
     pub source: &'static str,
+    pub bounds: Bounds,
+}
+
+/// From which side a budget bounds a figure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Bounds {
+    AtMost,
+    AtLeast,
 }
 
 impl Budget {
     pub const fn of(value: f64, unit: &'static str) -> Self {
-        Self { value, unit, source: "budget" }
+        Self { value, unit, source: "budget", bounds: Bounds::AtMost }
     }
 }
 
 impl Figure {
     pub fn alone(name: impl Into<String>, value: f64, unit: &'static str) -> Self {
         let (name, source) = (name.into(), String::new());
-        Self { name, value, unit, against: None, ratio: None, source }
+        Self { name, value, unit, against: None, ratio: None, met: None, source }
     }
 
     /// A figure with its budget, without a ratio.
     pub fn within(name: impl Into<String>, value: f64, budget: &Budget) -> Self {
-        let &Budget { value: most, unit, source } = budget;
-        Self { against: Some(most), source: source.to_owned(), ..Self::alone(name, value, unit) }
+        let &Budget { value: bound, unit, source, bounds } = budget;
+        let (against, source) = (Some(bound), source.to_owned());
+        let met = Some(match bounds {
+            Bounds::AtMost => value <= bound,
+            Bounds::AtLeast => value >= bound,
+        });
+        Self { against, met, source, ..Self::alone(name, value, unit) }
     }
 
     /// A figure with a peer of the same run; the source says so.
@@ -143,6 +158,15 @@ mod tests {
         let pair = Pair::in_turns(3, ours, peers).unwrap();
         assert_eq!((pair.ours, pair.ratio()), (2.0, 2.0 / 6.0));
         assert_eq!(log.into_inner(), ['o', 'p', 'o', 'p', 'o', 'p', 'o', 'p']);
+    }
+
+    #[test]
+    fn a_budget_is_missed_on_its_side() {
+        let least = Budget { bounds: Bounds::AtLeast, ..Budget::of(40.0, "instructions") };
+        let met = |budget: &Budget| [39.0, 40.0, 42.0].map(|it| Figure::within("", it, budget).met);
+        assert_eq!(met(&Budget::of(40.0, "instructions")), [Some(true), Some(true), Some(false)]);
+        assert_eq!(met(&least), [Some(false), Some(true), Some(true)]);
+        assert_eq!(Figure::alone("", 42.0, "instructions").met, None);
     }
 
     #[test]

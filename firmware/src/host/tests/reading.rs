@@ -1,4 +1,5 @@
-//! Counts that are read late, and a tank that debits the steps of the torque when they reach the motor.
+//! Counts that are read late, or whose age varies, and a tank that debits the steps of the torque when they reach the
+//! motor.
 
 use super::*;
 
@@ -9,6 +10,9 @@ struct Search {
     sampling: Sampling,
     /// Most parts of a period by which a count is read late.
     late: usize,
+    /// Parts from the earliest instant of a count to that of the torques: with as many as `late`, the counts are
+    /// old by up to that.
+    delay: usize,
     response: HostResponse,
 }
 
@@ -25,16 +29,25 @@ impl Search {
         if !debits_steps {
             response.step_price = 0.0;
         }
-        Self { host, sampling, late, response }
+        Self { host, sampling, late, delay: 0, response }
+    }
+
+    /// Readings whose age is anything up to so many parts.
+    fn with_age(late: usize, encoder: &'static EncoderReading) -> Self {
+        let (host, sampling) =
+            (HostTorque { torque: 0.4, ..HOST }, Sampling { ticks: 1, ..sampling() });
+        let response = HostResponse::of(&host, &Latency::NONE.read_by(encoder), &sampling).unwrap();
+        Self { host, sampling, late, delay: late, response }
     }
 
     /// The most energy that the hand has out at any time, over the budget until then.
-    fn most(&self, run: usize) -> f64 {
+    fn most<const LAGS: usize>(&self, run: usize) -> f64 {
         let HostTorque { energy, power, damping, torque, .. } = self.host;
         let count = self.sampling.count;
-        let mut tank: Tank<FixedDelay<i64, 1>, 0> = Tank::new(&self.host, &self.response).unwrap();
+        let mut tank: Tank<FixedDelay<i64, 1>, LAGS> =
+            Tank::new(&self.host, &self.response).unwrap();
         let share = 0.5 * self.response.speed * PERIOD;
-        let mut motor = Motor::new(0, 0.0, 0);
+        let mut motor = Motor::new(self.delay, 0.0, 0);
         motor.commands.push(0.0);
         let mut random = Random(run as u64);
         let size = 10_f64.powf(random.next());
@@ -92,7 +105,7 @@ impl Search {
     /// The most of many hosts, hands and late counts.
     fn most_of_many(late: usize, count: f64, debits_steps: bool) -> f64 {
         let search = Self::new(late, count, debits_steps);
-        let any = |run| search.most(run);
+        let any = |run| search.most::<0>(run);
         (0..600).map(any).fold(0.0, f64::max)
     }
 }
@@ -104,6 +117,21 @@ fn counts_that_are_read_late_give_no_more_than_the_budget() {
             let most = Search::most_of_many(late, count, true);
             assert!((0.15..=1.0).contains(&most), "{late}, {count}: {most}");
         }
+    }
+}
+
+#[test]
+fn readings_of_a_varying_age_give_no_more_than_the_budget() {
+    const fn up_to(parts: usize) -> EncoderReading {
+        let most = parts as f64 / PARTS as f64 * PERIOD;
+        EncoderReading { age: TimeRange::between(0.0, most), ..*EncoderReading::ideal() }
+    }
+    static ENCODERS: [(usize, EncoderReading); 3] = [(2, up_to(2)), (8, up_to(8)), (20, up_to(20))];
+    for (late, encoder) in &ENCODERS {
+        let search = Search::with_age(*late, encoder);
+        let most = (0..600).map(|run| search.most::<1>(run)).fold(0.0, f64::max);
+        println!("{late}: {most}");
+        assert!((0.15..=1.0).contains(&most), "{late}: {most}");
     }
 }
 

@@ -96,6 +96,11 @@ impl Decay {
         Self { tau, held, unspread: lag.unspread(), tick, rest, over }
     }
 
+    /// The integral of the square of a step's rest after the tick, where it ends between two updates.
+    pub const fn square_left(&self, updates: u16) -> Interval {
+        SampledLag::of(updates, self.tau).square_after(self.over)
+    }
+
     /// `(1 - rest) z + (rest - tick)`
     const fn passed(&self) -> Polynomial {
         Polynomial::ascending(&[self.rest.sub(self.tick), Interval::ONE.sub(self.rest)])

@@ -62,6 +62,17 @@ impl SampledLag {
         held.sub(Interval::new(0.0, beyond.hi().max(0.0)))
     }
 
+    /// The integral of its square from a time in periods on, which is not negative: the rest of the straight line
+    /// that is on at that time, and the lines after it.
+    pub const fn square_after(&self, time: Interval) -> Interval {
+        let (update, within, _) = self.place(time);
+        let (from, to) = (self.rest_after(time), self.after_updates(update + 1));
+        let squares = from.mul(from).add(from.mul(to)).add(to.mul(to));
+        let length = Interval::ONE.sub(within).div(Interval::exact(3.0 * self.updates));
+        let later = to.mul(to).mul(self.held().sub(self.unspread()));
+        squares.mul(length).add(later)
+    }
+
     /// The rest of a step at a time in periods, which is not negative: from one update to the next it falls
     /// by at most 1.
     #[inline(never)]

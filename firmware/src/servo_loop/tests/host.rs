@@ -248,6 +248,33 @@ fn a_budget_gives_no_energy_and_takes_what_it_has_no_room_for() {
     assert!((0.04..=0.05).contains(&fed), "{fed}");
 }
 
+/// A torque under way was paid at the price of the last budget, and of an amplifier that was just switched off no
+/// torque is known.
+#[test]
+fn another_budget_waits_for_the_last_torque() {
+    let mut run = Run::new();
+    run.send(0.4, 0);
+    run.bench.stand(FREE, 5);
+    let waits = |run: &mut Run| {
+        let number = run.bench.requests.submit(run.set(HOST)).ok().unwrap();
+        let mut torques = Vec::new();
+        while run.bench.requests.swapped() != number {
+            run.send(0.4, 0);
+            torques.push(run.tick(FREE));
+        }
+        torques
+    };
+    // The torque of a tick acts until the tick after the next begins.
+    let torques = waits(&mut run);
+    assert!(torques.len() > 5 && torques.ends_with(&[0.0, 0.0]), "{torques:?}");
+    run.bench.stand(FREE, 60);
+    run.bench.requests.disarm();
+    while run.bench.servo_loop.state() != State::Disarmed {
+        run.tick(FREE);
+    }
+    assert_eq!(waits(&mut run).len(), 10);
+}
+
 /// After a fault nothing is known of the last torque, and a new arming does not fill the tank.
 #[test]
 fn a_fault_empties_the_tank() {
