@@ -18,6 +18,7 @@ use crate::peripheral::clock::{Cause, Clock};
 use crate::peripheral::counter::Counter;
 use crate::peripheral::dac::{Dac, Trigger};
 use crate::peripheral::dma::{Dma, Move};
+use crate::peripheral::edges::Edges;
 use crate::peripheral::pins::{Level, Pins};
 use crate::peripheral::registers::Registers;
 use crate::peripheral::serial::Serial;
@@ -70,6 +71,8 @@ pub struct VirtualBoard {
     pub magnetic: Option<MagneticEncoder>,
     /// That SPI.
     pub spi: Spi,
+    /// The detector of edges.
+    edges: Edges,
     /// What moves its words.
     pub dma: Dma,
     /// Whether a timer's request for a transfer was not served yet.
@@ -124,6 +127,7 @@ impl VirtualBoard {
             index: None,
             magnetic: None,
             spi: Spi::default(),
+            edges: Edges::default(),
             dma: Dma::default(),
             transfer_requested: false,
             dac: Dac::new(chip.dac),

@@ -37,6 +37,8 @@ pub enum Unit {
     Dma,
     /// Its multiplexer.
     DmaMultiplexer,
+    /// The detector of edges.
+    Edges,
     /// The independent watchdog.
     Watchdog,
     /// A unit of the power stage.
@@ -192,6 +194,12 @@ pub const BREAKS: u32 = 0x1C;
 /// That bit.
 pub const LOCK_UP_BREAKS: u32 = 1;
 
+/// The G4's EXTICR1 to 4, the port of each pin's line in the detector of edges (RM0440, 10.2).
+const PORTS: [(u32, u32, u32); 4] =
+    [(0x08, 0, 0xFFFF), (0x0C, 0, 0xFFFF), (0x10, 0, 0xFFFF), (0x14, 0, 0xFFFF)];
+/// The offset of the first.
+pub const LINE_PORTS: u32 = 0x08;
+
 /// The debug unit: the chip's identity, and the clocks while the core sleeps.
 const DEBUG_G4: Table = &[
     (0x00, 0x2001_6469, 0),
@@ -224,6 +232,7 @@ static G4_MAP: &[MapEntry] = &[
     ungated(0x4000_3000, "IWDG", Unit::Watchdog),
     map_entry(0x4000_7000, "PWR", Unit::Power, 0x58, 0x38, 28),
     map_entry(0x4001_0000, "SYSCFG", Unit::Configuration, 0x60, 0x40, 0),
+    ungated(0x4001_0400, "EXTI", Unit::Edges),
     map_entry(0x4002_0000, "DMA1", Unit::Dma, 0x48, 0x28, 0),
     map_entry(0x4002_0800, "DMAMUX1", Unit::DmaMultiplexer, 0x48, 0x28, 2),
     ungated(0x4002_1000, "RCC", Unit::Clock),
@@ -292,7 +301,7 @@ pub static NUCLEO_G474RE: Chip = Chip {
     flash_interface: FLASH_G4,
     options: 0x20,
     // CFGR2, with the flag of a wrong parity.
-    configuration: &[(BREAKS, 0, 0)],
+    configuration: &[(BREAKS, 0, 0), PORTS[0], PORTS[1], PORTS[2], PORTS[3]],
     debug: DEBUG_G4,
     ports: |port| match port {
         // The debug port's pins are not analog out of reset; A's and B's differ.
@@ -328,7 +337,7 @@ pub static B_G431B_ESC1: Chip = Chip {
         ((1, 15), 4),
     ]),
     // CFGR2 as above, with the bit for a locked-up core.
-    configuration: &[(BREAKS, 0, LOCK_UP_BREAKS)],
+    configuration: &[(BREAKS, 0, LOCK_UP_BREAKS), PORTS[0], PORTS[1], PORTS[2], PORTS[3]],
     // TIM4_CH1 and TIM4_CH2.
     encoder: ([(1, 6), (1, 7)], 2),
     // TIM4_CH3.

@@ -16,6 +16,9 @@ pub enum Model {
     As5047p,
 }
 
+/// Core clocks in which the pull-up of 40 kΩ has the line of a released chip high, with 40 pF at it.
+const RISE: u64 = 330;
+
 /// A failure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Failure {
@@ -45,11 +48,13 @@ pub struct MagneticEncoder {
     pub failure: Option<Failure>,
     /// The last two positions in counts, each with its time.
     positions: [(u64, i64); 2],
-    /// Until it turns for the first time, also by nothing, it is a count aside: a first reading of zero is that of a
-    /// broken wire, too.
-    is_aside: bool,
     random: u64,
     selected: bool,
+    /// The level that it gives its line, or has given it, and when it was selected or released.
+    level: bool,
+    changed: u64,
+    /// When the line has risen last.
+    rose: Option<u64>,
     /// The bits to come, from the highest on, and how many of them.
     out: (u64, u32),
     /// Bits received in this transfer.
@@ -62,6 +67,8 @@ pub struct MagneticEncoder {
     frozen: Option<i64>,
     /// The angle of the last sample in counts.
     pub sampled: i64,
+    /// That of the last transfer, of a chip that answers in the next one.
+    pub answered: i64,
 }
 
 impl MagneticEncoder {
@@ -80,10 +87,12 @@ impl MagneticEncoder {
             delay: 0,
             noise: 0,
             failure: None,
-            positions: [(0, position + 1); 2],
-            is_aside: true,
+            positions: [(0, position); 2],
             random: 1,
             selected: false,
+            level: true,
+            changed: 0,
+            rose: None,
             out: (0, 0),
             input: (0, 0),
             answer: 0,
@@ -92,6 +101,7 @@ impl MagneticEncoder {
             flagged: false,
             frozen: None,
             sampled: 0,
+            answered: 0,
         })
     }
 
@@ -106,9 +116,6 @@ impl MagneticEncoder {
 
     /// Turns by some counts up to this time.
     pub fn turn(&mut self, counts: i32, now: u64) {
-        if std::mem::take(&mut self.is_aside) {
-            self.positions = self.positions.map(|(at, position)| (at, position - 1));
-        }
         let [_, (at, position)] = self.positions;
         self.positions = [(at, position), (now, position + i64::from(counts))];
     }
@@ -139,6 +146,7 @@ impl MagneticEncoder {
 
     /// It is selected, by a master with this mode.
     pub fn select(&mut self, now: u64, mode: u32) {
+        (self.rose, self.level, self.changed) = (self.rose(now), self.line(now), now);
         (self.selected, self.input) = (self.has_mode(mode), (0, 0));
         let fails = |failure| self.failure == Some(failure);
         let (weak, flag) = (fails(Failure::WeakField), fails(Failure::Flag));
@@ -156,7 +164,10 @@ impl MagneticEncoder {
                 let content = (self.sample(now) as u64) << 3 | status;
                 (0xFFFF << 32 | content << 8 | remainder(content, 24, 0x107, 8), 48)
             }
-            Model::As5048a | Model::As5047p => (self.answer, 16),
+            Model::As5048a | Model::As5047p => {
+                self.answered = self.sampled;
+                (self.answer, 16)
+            }
         };
         if let Some(Failure::Bit(bit)) = self.failure {
             bits ^= 1 << bit;
@@ -168,13 +179,31 @@ impl MagneticEncoder {
     pub fn clock(&mut self, input: bool) -> bool {
         let (word, count) = self.input;
         self.input = (word << 1 | u64::from(input), count + 1);
-        let (bits, left) = &mut self.out;
+        let (was, level) = (self.has_line(self.level), self.next_bit(count));
+        self.level = level;
+        let is = self.has_line(level);
+        // When in the transfer does not matter.
+        if is && !was {
+            self.rose = Some(self.changed);
+        }
+        is
+    }
+
+    /// The level of a line that it would give this.
+    fn has_line(&self, level: bool) -> bool {
         match self.failure {
-            Some(Failure::Zeros) => return false,
-            Some(Failure::Ones) => return true,
-            // A line that nothing drives is pulled up.
-            _ if !self.selected || *left == 0 => return true,
-            _ => {}
+            Some(Failure::Zeros) => false,
+            Some(Failure::Ones) => true,
+            _ => level,
+        }
+    }
+
+    /// The bit of the next clock, after so many.
+    fn next_bit(&mut self, count: u32) -> bool {
+        let (bits, left) = &mut self.out;
+        // A line that nothing drives is pulled up.
+        if !self.selected || *left == 0 {
+            return true;
         }
         *left -= 1;
         let is_unknown =
@@ -182,9 +211,21 @@ impl MagneticEncoder {
         is_unknown || *bits >> *left & 1 != 0
     }
 
+    /// The level of its line.
+    pub fn line(&self, now: u64) -> bool {
+        let is_pulled_up = !self.selected && now >= self.changed + RISE;
+        self.has_line(self.level || is_pulled_up)
+    }
+
+    /// When the line has risen last, if it has.
+    pub fn rose(&self, now: u64) -> Option<u64> {
+        let by_pull_up = !self.selected && !self.level && self.line(now);
+        if by_pull_up { Some(self.changed + RISE) } else { self.rose }
+    }
+
     /// It is released: an AS504x executes the command.
     pub fn release(&mut self, now: u64) {
-        self.selected = false;
+        (self.selected, self.changed) = (false, now);
         let (word, 16) = self.input else { return };
         if !matches!(self.model, Model::As5048a | Model::As5047p) {
             return;
@@ -219,6 +260,11 @@ impl MagneticEncoder {
             }
             0x3FFF => self.sample(now) as u64,
             _ if address == angle => self.sample(now) as u64,
+            // Diagnostics: a magnet that is too weak, or the compensation of the offsets has ended; and the gain.
+            _ if address == angle - 2 => {
+                let weak = self.failure == Some(Failure::WeakField);
+                (u64::from(weak) << 11) | (1 << 8) | if weak { 0xFF } else { 0x80 }
+            }
             _ => 0,
         }
     }

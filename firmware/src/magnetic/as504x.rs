@@ -28,3 +28,16 @@ pub fn decode(&[word, ..]: &Frame) -> Result<u32, ReadingError> {
         _ => Ok((word & ANGLE).into()),
     }
 }
+
+/// Of the registers with diagnostics: the field is too weak or too strong, or the angle is out of range. The gain of an
+/// AS504x follows the field, and no angle has its state.
+const MAGNET: u32 = 0b111 << 9;
+
+/// Checks the answer of the register with diagnostics. Not confirmed: that its bits 9 to 11 are these for both chips.
+pub fn check_magnet(frame: &Frame) -> Result<(), ReadingError> {
+    match decode(frame) {
+        Ok(state) if state & MAGNET == 0 => Ok(()),
+        Ok(_) => Err(ReadingError::Field),
+        Err(error) => Err(error),
+    }
+}

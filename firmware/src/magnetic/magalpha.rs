@@ -26,6 +26,7 @@ pub const MA702: Chip = Chip {
     interface: Interface { words: 1, word_bits: 16, idle_high: true, highest_clock: 12e6 },
     command: [0; 3],
     set_up: &[],
+    diagnosis: None,
     start_up: 0.3,
     age: TimeRange::between(3e-6, 1.3e-5),
     is_period_late: false,

@@ -46,7 +46,7 @@ words! {
     Checksum "its checksum is wrong",
     /// The parity is not that of the word.
     Parity "its parity is wrong",
-    /// All bits are 0: a broken wire, or the angle zero.
+    /// All bits are 0: a wire at ground, or the angle zero.
     Zeros "all bits are 0",
     /// All bits are 1: no chip drives the line.
     Ones "all bits are 1",
@@ -91,6 +91,9 @@ impl Interface {
     }
 }
 
+/// A question to a chip, and the check of its answer.
+pub type Diagnosis = (Frame, fn(&Frame) -> Result<(), ReadingError>);
+
 /// A magnetic absolute encoder. A bit is taken over at the second edge of its clock, in all of them.
 #[derive(Debug)]
 pub struct Chip {
@@ -104,6 +107,9 @@ pub struct Chip {
     pub command: Frame,
     /// Transfers that set it up, after power-on.
     pub set_up: &'static [Frame],
+    /// The command whose answer has the state of its magnet, where no angle has it, and the reason why that answer is no
+    /// good; asked after the set-up.
+    pub diagnosis: Option<Diagnosis>,
     /// Time in s from power-on to its first angle.
     pub start_up: f64,
     /// Age in s of an angle when the chip samples it for a transfer.

@@ -16,6 +16,7 @@ pub const MT6701: Chip = Chip {
     interface: Interface { words: 2, word_bits: 12, idle_high: false, highest_clock: 10e6 },
     command: [0; 3],
     set_up: &[],
+    diagnosis: None,
     start_up: 0.05,
     age: TimeRange::between(0.0, 1e-5),
     is_period_late: false,

@@ -15,6 +15,7 @@ pub const MT6835: Chip = Chip {
     interface: Interface { words: 3, word_bits: 16, idle_high: true, highest_clock: 16e6 },
     command: [0xA003, 0, 0],
     set_up: &[],
+    diagnosis: None,
     start_up: 0.1,
     age: TimeRange::between(0.0, 1e-5),
     is_period_late: false,

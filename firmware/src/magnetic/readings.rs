@@ -30,17 +30,24 @@ impl Readings {
     }
 
     /// Takes a transfer, of which so many in a row may fail, as the scene's certificate says; whether it has an angle.
-    /// A failed one is replaced by the angle before.
+    /// A failed one is replaced by the angle before. `has_been_high` is asked after a word of zeros: whether the data
+    /// line has been high since it was last asked.
     ///
     /// # Errors
     /// If more transfers in a row have failed than are allowed, or if the chip has stopped.
     #[inline(always)]
-    pub fn take(&mut self, chip: &Chip, frame: &Frame, allowed: u16) -> Result<bool, ReadingError> {
+    pub fn take(
+        &mut self,
+        chip: &Chip,
+        frame: &Frame,
+        allowed: u16,
+        has_been_high: impl FnOnce() -> bool,
+    ) -> Result<bool, ReadingError> {
         let count = match (chip.decode)(frame) {
             Ok(count) => count,
             Err(error) => {
                 cold_path();
-                match self.near_zero(chip, error) {
+                match self.near_zero(chip, error, has_been_high) {
                     Some(count) => count,
                     None => return self.fail(error, allowed),
                 }
@@ -73,17 +80,24 @@ impl Readings {
         if self.failed > allowed { Err(error) } else { Ok(false) }
     }
 
-    /// Beside zero a word of equal bits is an angle: a handle may rest there.
+    /// Beside zero, or as the first reading, a word of zeros is an angle, as a handle may rest there. No checksum tells
+    /// it from a wire at ground, but the line does: it is pulled up, and is high while the chip is not selected.
+    ///
+    /// A line that nothing drives is as high as a word of ones. So these are an angle only beside zero, and until the
+    /// chip counts as frozen.
     #[inline(always)]
-    fn near_zero(&self, chip: &Chip, error: ReadingError) -> Option<u32> {
+    fn near_zero(
+        &self,
+        chip: &Chip,
+        error: ReadingError,
+        has_been_high: impl FnOnce() -> bool,
+    ) -> Option<u32> {
         let (turn, near) = (chip.width.mask(), chip.width.mask() / NEAR);
-        // Without an angle before, the sum is above any turn.
-        if self.count.wrapping_add(near) & (turn | NONE) > 2 * near {
-            return None;
-        }
+        let is_first = self.count & NONE != 0;
+        let is_near = !is_first && self.count.wrapping_add(near) & turn <= 2 * near;
         match error {
-            ReadingError::Zeros => Some(0),
-            ReadingError::Ones if chip.ones_are_angle => Some(turn),
+            ReadingError::Zeros if (is_first || is_near) && has_been_high() => Some(0),
+            ReadingError::Ones if is_near && chip.ones_are_angle => Some(turn),
             _ => None,
         }
     }

@@ -49,7 +49,8 @@ fn a_wire_that_is_broken_is_no_angle() {
 fn a_failed_reading_is_an_older_one() {
     let mut readings = Readings::none();
     let word = |angle: u16| frame(&[angle | (angle.count_ones() as u16 % 2) << 15]);
-    let mut take = |frame| readings.take(&AS5048A, &frame, 2).map(|_| readings.count() & 0x3FFF);
+    let mut take =
+        |frame| readings.take(&AS5048A, &frame, 2, || false).map(|_| readings.count() & 0x3FFF);
     let lost = frame(&[u16::MAX]);
     assert_eq!(take(word(900)), Ok(900));
     assert_eq!([take(lost), take(lost)], [Ok(900); 2]);
@@ -63,7 +64,7 @@ fn a_failed_reading_is_an_older_one() {
 fn only_a_chip_that_is_never_quiet_can_be_told_to_be_frozen() {
     let takes = |chip: &Chip, words: &[u16]| {
         let mut readings = Readings::none();
-        let taken = (0..2000).map(|_| readings.take(chip, &frame(words), 0));
+        let taken = (0..2000).map(|_| readings.take(chip, &frame(words), 0, || false));
         taken.take_while(Result::is_ok).count()
     };
     for (chip, words, _) in CASES {
@@ -113,20 +114,32 @@ fn a_transfer_before_an_update_adds_to_the_age() {
     }
 }
 
-/// A handle may rest where all bits are equal; a wire that breaks elsewhere is told.
+/// A handle may rest where all bits are equal, and a line at ground is told there and elsewhere.
 #[test]
 fn a_word_of_equal_bits_is_an_angle_beside_zero() {
-    let takes = |chip: &Chip, first: u16, word: u16| {
+    let takes = |chip: &Chip, first: &[u16], word: u16, has_been_high| {
         let mut readings = Readings::none();
-        let _ = readings.take(chip, &frame(&[first]), 0);
-        readings.take(chip, &frame(&[word]), 0).map(|_| readings.count())
+        let _ = readings.take(chip, &frame(first), 0, || false);
+        let taken = readings.take(chip, &frame(&[word]), 0, || has_been_high);
+        taken.map(|_| readings.count())
     };
-    assert_eq!(takes(&MA702, 200, 0), Ok(0));
-    assert_eq!(takes(&MA702, 65_400, 65_535), Ok(65_535));
-    assert_eq!(takes(&MA702, 300, 0), Err(ReadingError::Zeros));
-    assert_eq!(takes(&MA702, 65_000, 65_535), Err(ReadingError::Ones));
-    assert_eq!(takes(&AS5048A, 3, 0), Ok(0));
-    assert_eq!(takes(&AS5048A, 3, 65_535), Err(ReadingError::Ones));
-    // Nor is the first reading a zero.
-    assert_eq!(takes(&MA702, 0, 0), Err(ReadingError::Zeros));
+    const ZEROS: Result<u32, ReadingError> = Err(ReadingError::Zeros);
+    for (chip, near, far) in [
+        (&MA702, &[200][..], &[300][..]),
+        (&AS5048A, &[3], &[0x8400]),
+        (&MT6701, &[0x0000, 0x010C], &[0x0AAF, 0x0019]),
+        (&MT6835, &[0xFFFF, 0, 0x0838], &[0xFFFF, 0xAAAA, 0xA804]),
+    ] {
+        assert!((chip.decode)(&frame(near)).is_ok() && (chip.decode)(&frame(far)).is_ok());
+        assert_eq!(takes(chip, near, 0, true), Ok(0), "{}", chip.name);
+        assert_eq!(takes(chip, near, 0, false), ZEROS, "{}", chip.name);
+        assert_eq!(takes(chip, far, 0, true), ZEROS, "{}", chip.name);
+        // Also as the first reading.
+        assert_eq!(takes(chip, &[0], 0, true), Ok(0), "{}", chip.name);
+        assert_eq!(takes(chip, &[0], 0, false), ZEROS, "{}", chip.name);
+    }
+    assert_eq!(takes(&MA702, &[65_400], 65_535, false), Ok(65_535));
+    assert_eq!(takes(&MA702, &[65_000], 65_535, true), Err(ReadingError::Ones));
+    assert_eq!(takes(&MA702, &[0], 65_535, true), Err(ReadingError::Ones));
+    assert_eq!(takes(&AS5048A, &[3], 65_535, true), Err(ReadingError::Ones));
 }

@@ -1,7 +1,7 @@
 //! The board's bus: the reads and writes of a program, and the errors of accesses.
 
 use super::{BusAccess, VirtualBoard, wired};
-use crate::chip::{MapEntry, Stage, TICK_INTERRUPT, Unit};
+use crate::chip::{LINE_PORTS, MapEntry, Stage, TICK_INTERRUPT, Unit};
 use crate::core::System;
 use crate::core::exceptions::Number;
 use crate::core::system::{SYSTEM, pends};
@@ -11,6 +11,7 @@ use crate::peripheral::basic_timer::BasicTimer;
 use crate::peripheral::counter::Counter;
 use crate::peripheral::dac::Dac;
 use crate::peripheral::dma::Dma;
+use crate::peripheral::edges::Edges;
 use crate::peripheral::pins::{self, Level};
 use crate::peripheral::registers::Registers;
 use crate::peripheral::serial::Serial;
@@ -170,6 +171,7 @@ impl VirtualBoard {
             Unit::Spi => self.spi.read(offset, now),
             Unit::Dma => self.dma.read(offset),
             Unit::DmaMultiplexer => self.dma.read_multiplexer(offset),
+            Unit::Edges => self.edges.read(offset, self.risen()),
             Unit::Watchdog => self.watchdog.read(offset),
             Unit::Stage(unit) => {
                 self.advance_power_stage();
@@ -182,14 +184,31 @@ impl VirtualBoard {
         }
     }
 
-    /// IDR: the pins that this chip drives high. Pins driven by others are not modelled.
+    /// The pin of a magnetic encoder's data line, if it is connected to the detector of edges, and when it has risen.
+    fn risen(&self) -> Option<(u32, u64)> {
+        let ([_, _, (port, pin), _], _) = self.chip.bus?.pins;
+        let ports = self.configuration.get(LINE_PORTS + pin / 4 * 4);
+        let is_of_port = ports >> (4 * (pin % 4)) & 0xF == port as u32;
+        let rose = self.magnetic.as_ref()?.rose(self.now)?;
+        is_of_port.then_some((pin, rose))
+    }
+
+    /// IDR: the pins that this chip drives high, and a magnetic encoder's data line. Other pins that others drive are
+    /// not modelled.
     fn input(&self, port: usize) -> u32 {
         let gates = self.chip.gates.iter().flat_map(|gates| gates.iter());
         let gates = gates.zip(self.power_stage.gates());
         let of_timer = |pin: u32| {
             gates.clone().any(|(gate, level)| gate.0 == (port, pin) && level == Level::High)
         };
-        let is_high = |pin: &u32| self.ports[port].level(*pin) == Level::High || of_timer(*pin);
+        let of_encoder = |pin: u32| {
+            let is_line = self.chip.bus.is_some_and(|bus| bus.pins.0[2] == (port, pin));
+            let is_pulled = self.ports[port].is_pulled(pin);
+            is_line && self.magnetic.as_ref().map_or(is_pulled, |chip| chip.line(self.now))
+        };
+        let is_high = |pin: &u32| {
+            self.ports[port].level(*pin) == Level::High || of_timer(*pin) || of_encoder(*pin)
+        };
         (0..16).filter(is_high).map(|pin| 1 << pin).sum()
     }
 
@@ -235,6 +254,7 @@ impl VirtualBoard {
             }
             Unit::Dma => self.dma.write(offset, value),
             Unit::DmaMultiplexer => self.dma.write_multiplexer(offset, value),
+            Unit::Edges => self.edges.write(offset, value, now),
             Unit::Watchdog => self.watchdog.write(offset, value, now, self.clock.core()),
             Unit::Stage(unit) => {
                 let Self { power_stage, ports, chip, clock, .. } = self;
@@ -275,6 +295,7 @@ impl VirtualBoard {
             Unit::Serial => self.serial = Serial::new(self.chip.usart),
             Unit::Spi => self.spi = Spi::default(),
             Unit::Dma | Unit::DmaMultiplexer => self.dma = Dma::default(),
+            Unit::Edges => self.edges = Edges::default(),
             Unit::Stage(unit) => self.power_stage.reset_unit(unit),
         }
     }

@@ -8,6 +8,7 @@ pub mod clock;
 pub mod counter;
 pub mod dac;
 pub mod dma;
+pub mod edges;
 pub mod pins;
 pub mod pwm_timer;
 pub mod registers;

@@ -19,7 +19,7 @@
 //! (tables of the multiplexer's inputs list it).
 
 use core::hint::cold_path;
-use core::sync::atomic::{AtomicU16, Ordering};
+use core::sync::atomic::{AtomicBool, AtomicU16, Ordering};
 
 use cortex_m::peripheral::NVIC;
 use embassy_stm32::interrupt;
@@ -27,7 +27,7 @@ use embassy_stm32::pac;
 use embassy_stm32::pac::bdma::vals::{Dir, Pl, Size};
 use embassy_stm32::pac::dmamux::regs::Ccr;
 use embassy_stm32::pac::dmamux::vals::Pol;
-use embassy_stm32::pac::gpio::vals::{Moder, Ospeedr, Pupdr};
+use embassy_stm32::pac::gpio::vals::{Idr, Moder, Ospeedr, Pupdr};
 use embassy_stm32::pac::spi::regs::Cr1;
 use embassy_stm32::pac::spi::vals::{Br, Cpha, Cpol, Ds, Mstr};
 
@@ -101,6 +101,10 @@ const GENERATED: u8 = 1;
 /// SPI is busy with it (RM0440, SPI: SPE goes off when BSY is), and each of these writes takes some clocks.
 const ENDING: usize = 8;
 
+/// Longest time in s in which the pull-up, of at most 55 kΩ, has the released data line high: a wire of 20 cm has less
+/// than 100 pF.
+const RISE: f64 = 1e-5;
+
 /// What a transfer and its reading use: in one place, so that one address reaches all of it.
 struct Memory {
     /// The words of the last transfer.
@@ -108,6 +112,8 @@ struct Memory {
     /// CR1 of the SPI that begins a transfer, and those that end it.
     begins: AtomicU16,
     ends: [AtomicU16; ENDING],
+    /// Whether the chip's data line was high when [`has_been_high`] looked at it.
+    was_high: AtomicBool,
     reader: IsrCell<Reader>,
 }
 
@@ -115,6 +121,7 @@ static MEMORY: Memory = Memory {
     frame: [const { AtomicU16::new(0) }; LONGEST],
     begins: AtomicU16::new(0),
     ends: [const { AtomicU16::new(0) }; ENDING],
+    was_high: AtomicBool::new(false),
     reader: IsrCell::empty(),
 };
 
@@ -123,6 +130,8 @@ struct Reader {
     readings: Readings,
     /// Their fault.
     fault: Option<Fault>,
+    /// The reason why the chip cannot be used until the next reset.
+    unfit: Option<ReadingError>,
     setup: &'static Setup,
 }
 
@@ -139,21 +148,48 @@ pub fn count() -> RawCount {
     RawCount::from(reader().readings.count())
 }
 
-/// The fault of the readings, if there is one since the last call.
+/// The fault of the readings, if there is one since the last call, or if there is one until the next reset.
 #[inline(always)]
 pub fn fault() -> Option<Fault> {
-    reader().fault.take()
+    if reader().fault.is_none() { None } else { take_fault() }
+}
+
+#[cold]
+#[inline(never)]
+fn take_fault() -> Option<Fault> {
+    let Reader { fault, unfit, .. } = reader();
+    let taken = fault.take();
+    if let Some(error) = *unfit {
+        fail(error);
+    }
+    taken
+}
+
+/// Whether the chip's data line has been high since the last call, or is. It is pulled up, and nothing drives it while
+/// the chip is not selected. That it has risen stays in the detector of edges, whose interrupt the core does not enable
+/// (RM0440, EXTI).
+#[cold]
+#[inline(never)]
+fn has_been_high() -> bool {
+    let BusPin { port, pin, .. } = BUS.input;
+    let rose = pac::EXTI.pr(0).read().line(pin);
+    pac::EXTI.pr(0).write(|w| w.set_line(pin, true));
+    // If it is, it has risen before the write, which took the edge away for the next call, too.
+    let is_high = port.idr().read().idr(pin) == Idr::HIGH;
+    let was_high = MEMORY.was_high.load(Ordering::Relaxed);
+    MEMORY.was_high.store(is_high, Ordering::Relaxed);
+    rose || is_high || was_high
 }
 
 /// Takes the reading of the transfer that has ended since the last call, for any interrupt. Without such a transfer, or
-/// in the next one, the reading has failed. Whether there is a tick with it.
+/// in the next one, the reading has failed. Whether there is a tick with it; with what a fault requires.
 #[inline(always)]
-pub fn take(setup: &'static Setup) -> bool {
+pub fn take(setup: &'static Setup, on_fault: impl FnOnce()) -> bool {
     let words = setup.chip.interface.words;
     if DMA.isr().read().tcif(RECEIVE) && left() == words {
-        return take_ended(setup, || {});
+        return take_ended(setup, on_fault);
     }
-    note(missing(setup), setup, || {})
+    note(missing(setup), setup, on_fault)
 }
 
 /// Words left of the transfer that the DMA stores, or of the next one.
@@ -165,16 +201,16 @@ fn left() -> usize {
 #[cold]
 #[inline(never)]
 fn missing(setup: &'static Setup) -> Result<bool, ReadingError> {
-    restart(setup.chip);
+    restart(setup.chip, &[]);
     reader().readings.fail(ReadingError::Missing, setup.dropped)
 }
 
-/// The same at the end of a transfer, with what a fault requires.
+/// The same at the end of a transfer.
 #[inline(always)]
 pub fn take_ended(setup: &'static Setup, on_fault: impl FnOnce()) -> bool {
     acknowledge();
     let frame = received(setup.chip.interface.words);
-    note(reader().readings.take(setup.chip, &frame, setup.dropped), setup, on_fault)
+    note(reader().readings.take(setup.chip, &frame, setup.dropped, has_been_high), setup, on_fault)
 }
 
 /// Whether a reading has a tick. Without one, the next tick finds that a period has been missed.
@@ -186,6 +222,10 @@ fn note(taken: Result<bool, ReadingError>, setup: &'static Setup, on_fault: impl
             cold_path();
             fail(error);
             on_fault();
+            if error == ReadingError::Flag {
+                // The flag of some chips stays until it is read.
+                restart(setup.chip, setup.chip.set_up);
+            }
             true
         }
     }
@@ -212,7 +252,7 @@ fn acknowledge() {
 pub fn take_again(elapsed: impl Fn() -> u32) {
     /// Counts after the update at which the chip is surely selected.
     const SELECTED: u32 = 64;
-    let Reader { readings, fault, setup } = reader();
+    let Reader { readings, fault, setup, .. } = reader();
     let (chip, words) = (setup.chip, setup.chip.interface.words);
     let clock = 2_u32 << divider(chip.interface).to_bits();
     // Half a word less: the time of any words but all is shorter.
@@ -230,15 +270,17 @@ pub fn take_again(elapsed: impl Fn() -> u32) {
     NVIC::unpend(interrupt::DMA1_CHANNEL1);
     *fault = None;
     if !is_in_step {
-        restart(chip);
+        restart(chip, &[]);
         fail(ReadingError::Missing);
-    } else if let Err(error) = readings.take(chip, &received(words), setup.dropped) {
+    } else if let Err(error) = readings.take(chip, &received(words), setup.dropped, has_been_high) {
         fail(error);
     }
 }
 
-/// Begins again with the first word of a transfer.
-fn restart(chip: &'static Chip) {
+/// Begins again with the first word of a transfer, and with these transfers before it.
+#[cold]
+#[inline(never)]
+fn restart(chip: &'static Chip, before: &[Frame]) {
     let spi = BUS.spi;
     spi.cr2().modify(|w| {
         w.set_rxdmaen(false);
@@ -252,6 +294,13 @@ fn restart(chip: &'static Chip) {
     // The unit loses its words, those to send, too.
     (BUS.reset)();
     connect(chip);
+    for frame in before {
+        exchange(frame, chip.interface.words);
+    }
+    if !before.is_empty() {
+        // The next transfer answers the last.
+        exchange(&chip.command, chip.interface.words);
+    }
     connect_channels(chip);
     start(interrupts);
 }
@@ -276,13 +325,23 @@ pub fn set_up(setup: &'static Setup) {
     for frame in chip.set_up {
         exchange(frame, words);
     }
+    let unfit = chip.diagnosis.and_then(|(question, check)| {
+        exchange(&question, words);
+        check(&exchange(&chip.command, words)).err()
+    });
     // The first may answer the set-up.
     exchange(&chip.command, words);
+    // From here on the line must rise.
+    has_been_high();
+    cortex_m::asm::delay((RISE * TIMER_CLOCK) as u32);
     // A failure here is one of the first tick's, too.
     let mut readings = Readings::none();
-    let _ = readings.take(chip, &exchange(&chip.command, words), dropped);
+    let _ = readings.take(chip, &exchange(&chip.command, words), dropped, has_been_high);
     // SAFETY: the interrupt that uses it is not enabled yet.
-    unsafe { MEMORY.reader.init(Reader { readings, fault: None, setup }) };
+    unsafe { MEMORY.reader.init(Reader { readings, fault: None, unfit, setup }) };
+    if let Some(error) = unfit {
+        fail(error);
+    }
     connect_channels(chip);
 }
 
@@ -348,6 +407,13 @@ fn connect(chip: &Chip) {
     for BusPin { port, pin, .. } in [BUS.select, BUS.input] {
         port.pupdr().modify(|w| w.set_pupdr(pin, Pupdr::PULL_UP));
     }
+    // The ports are as far apart as their numbers.
+    let BusPin { port, pin, .. } = BUS.input;
+    let [first, second, port] = [pac::GPIOA, pac::GPIOB, port].map(|port| port.as_ptr() as usize);
+    let number = (port - first) / (second - first);
+    pac::SYSCFG.exticr(pin / 4).modify(|w| w.set_exti(pin % 4, number as u8));
+    pac::EXTI.rtsr(0).modify(|w| w.set_line(pin, true));
+    pac::EXTI.imr(0).modify(|w| w.set_line(pin, true));
 }
 
 /// The channels, which move nothing yet.

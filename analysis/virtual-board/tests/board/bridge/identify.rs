@@ -1,21 +1,28 @@
 //! The program that measures a device by the bridge, and what the host makes of its record.
 
 use std::f64::consts::TAU;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 use analysis::identify::Estimate;
 use analysis::identify::{self, Correction, record, torque_source};
 use analysis::sampled_actuator::SampledActuator;
+use analysis::toolchain::{BoardModel, NumberFormat, Tools, TorqueOutput, prepare};
 use haptic_servo::current::{CurrentLoop, Drive};
 use haptic_servo::excitation::SWEEP_PROTOCOL;
+use haptic_servo::magnetic::{Chip, MT6701};
 use haptic_servo::output_timing::OutputTiming;
 use haptic_servo::scene::{Device as Mechanics, Latency};
 use haptic_servo::wire::sweep::SweepRequest;
+use virtual_board::chip::B_G431B_ESC1;
+use virtual_board::magnetic_encoder::MagneticEncoder;
 use virtual_board::motor::Motor;
 
 use super::bench::{boot_program, circuit, motor, supply};
 use super::brushless::wired;
 use super::paddle::{Driven, Shaft};
 use super::{bridge_identify, bridge_wall, brushless_identify, brushless_wall};
+use crate::bench::Bench;
 
 /// Samples between two requests of a host that listens.
 const LISTENING: u64 = 100;
@@ -29,6 +36,8 @@ struct Measurement {
     drive: Drive,
     device: Mechanics,
     counts_per_turn: f64,
+    /// The magnetic encoder that it reads in place of a counter, and the age of its readings in s.
+    chip: Option<(&'static Chip, f64)>,
     ticks: u64,
     current_loop: CurrentLoop,
     /// The least part of the device's passivity that is found.
@@ -46,10 +55,41 @@ fn moves_freely(device: Mechanics) -> impl FnMut(&mut Shaft, f64, f64) + Send + 
     }
 }
 
+/// A board with the program.
+fn booted(what: &Measurement) -> Bench {
+    let device = Driven::new(what.counts_per_turn, moves_freely(what.device));
+    let Some((chip, _)) = what.chip else {
+        return boot_program(what.program, what.motor, device);
+    };
+    let mut bench = Bench::boot_file(&B_G431B_ESC1, &with_chip(what.program, chip), device);
+    circuit(&mut bench).motor = Some(what.motor);
+    bench.board_mut().magnetic = MagneticEncoder::find(chip.name, 0);
+    bench
+}
+
+/// The file of a program for the shaft, which reads it by a chip.
+fn with_chip(program: &str, chip: &Chip) -> PathBuf {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../firmware/src/bin");
+    let read = |file: &str| fs::read_to_string(folder.join(file)).unwrap();
+    let shaft =
+        read("brushless_shaft/mod.rs").replace("CounterWidth::Bits16", "CounterWidth::Bits14");
+    let name = chip.name.to_uppercase();
+    let text = read(&format!("{program}.rs"))
+        .replace("mod brushless_shaft;", &format!("mod brushless_shaft {{\n{shaft}}}"))
+        .replace(
+            "bridge: CURRENT_LOOP)",
+            &format!("bridge: CURRENT_LOOP, encoder: haptic_servo::magnetic::{name})"),
+        );
+    let (toolchain, name) = (prepare(Tools::Compiler).unwrap(), format!("{program}_by_chip"));
+    let written = toolchain.write_scene(&name, &text).unwrap();
+    let output = Some((BoardModel::find(B_G431B_ESC1.name).unwrap(), TorqueOutput::Bridge));
+    let built = toolchain.build_written(&written, output, NumberFormat::F32, true);
+    built.unwrap_or_else(|error| panic!("{error}")).path
+}
+
 /// What a board sends of a sweep, from its description to its end.
 fn recorded(what: &Measurement) -> String {
-    let device = Driven::new(what.counts_per_turn, moves_freely(what.device));
-    let mut bench = boot_program(what.program, what.motor, device);
+    let mut bench = booted(what);
     circuit(&mut bench).supply = supply(&what.drive);
     bench.run(20);
     bench.board_mut().send(&SweepRequest::Describe.frame());
@@ -101,7 +141,8 @@ fn measured(what: &Measurement) -> (record::Record, Correction) {
     assert_holds("damping", found.damping, what.device.damping);
     // The delay is a period of the modulation, and the lag is updated in each.
     let latency = what.current_loop.latency(OutputTiming::Latched);
-    let mean = latency.output_delay.middle() + mean_lag(&latency);
+    let age = what.chip.map_or(0.0, |(_, age)| age);
+    let mean = latency.output_delay.middle() + mean_lag(&latency) + age;
     assert_holds("delay", found.mean_delay, mean);
     let Estimate { value, lo, .. } = found.mean_delay;
     assert!(
@@ -123,6 +164,7 @@ fn the_host_measures_the_device_and_how_late_its_torque_is() {
         drive: bridge_wall::DRIVE,
         device,
         counts_per_turn: bridge_wall::TRANSDUCERS.counts_per_turn,
+        chip: None,
         ticks: bridge_identify::SWEEP.ticks(),
         current_loop: bridge_identify::CURRENT_LOOP,
         least: 0.95,
@@ -136,17 +178,45 @@ fn the_host_measures_the_device_and_how_late_its_torque_is() {
 /// Aligned by the program itself; the numbers of its motor are those of a phase.
 #[test]
 fn the_host_measures_a_device_with_a_brushless_motor() {
-    measured(&Measurement {
+    measured(&brushless(None));
+}
+
+/// The same motor, whose angle an MT6701 reads: selected 5.5 us before each update, it makes the delay longer.
+#[test]
+fn the_host_measures_a_device_by_a_chip() {
+    measured(&brushless(Some((&MT6701, 5.5e-6))));
+}
+
+/// A reading that fails beyond a late one ends the sweep, with the gates off.
+#[test]
+fn a_sweep_ends_where_the_chip_disappears() {
+    let what = brushless(Some((&MT6701, 5.5e-6)));
+    let mut bench = booted(&what);
+    circuit(&mut bench).supply = supply(&what.drive);
+    bench.run(20);
+    bench.board_mut().send(&SweepRequest::BEGIN.frame());
+    bench.run(LISTENING);
+    assert!(bench.is_on());
+    bench.board_mut().magnetic = None;
+    bench.run(LISTENING);
+    let sent = String::from_utf8(bench.board_mut().serial.take_sent()).unwrap();
+    assert!(sent.contains("end,output-fault,"), "{sent}");
+    assert!(!bench.is_on());
+}
+
+fn brushless(chip: Option<(&'static Chip, f64)>) -> Measurement {
+    Measurement {
         program: "brushless_identify",
         motor: wired([1, 0, 2], 0.7),
         drive: brushless_wall::DRIVE,
         device: brushless_wall::SCENE.device,
         counts_per_turn: brushless_wall::TRANSDUCERS.counts_per_turn,
+        chip,
         ticks: brushless_identify::SWEEP.ticks(),
         current_loop: brushless_identify::CURRENT_LOOP,
         // Of little damping a sweep at these codes finds less.
         least: 0.8,
-    });
+    }
 }
 
 /// Period in s of both programs.

@@ -1,5 +1,5 @@
-//! A magnetic encoder beside the bridge: its transfers before each update, their failures, and a motor that is aligned
-//! once for ever.
+//! Magnetic encoders beside the bridge: their transfers before each update, their failures, a chip that is not there,
+//! and a motor that is aligned once for ever.
 
 use std::f64::consts::TAU;
 use std::path::PathBuf;
@@ -13,11 +13,11 @@ use haptic_servo::current::IndexOffset;
 use haptic_servo::fault::Fault;
 use haptic_servo::magnetic::ReadingError;
 use haptic_servo::servo::Transducers;
-use haptic_servo::wire::message::Outcome;
+use haptic_servo::wire::message::{Outcome, ToBoard};
 use virtual_board::chip::B_G431B_ESC1;
 use virtual_board::magnetic_encoder::{Failure, MagneticEncoder};
 use virtual_board::peripheral::clock::Cause;
-use virtual_board::power_stage::gate_log::off_since;
+use virtual_board::power_stage::gate_log::{any_high, off_since};
 
 use super::bench::{INSTANT, circuit, code, gates, run_to_valley, supply};
 use super::brushless::{Held, align, check_stays_off, check_torque_of, wired_to};
@@ -53,6 +53,14 @@ impl Knob {
         let program = built.unwrap_or_else(|error| panic!("{error}")).path;
         Self { file, transducers, bridge, program }
     }
+
+    /// The chip, whose noise is what its driver takes for granted.
+    fn encoder(&self) -> MagneticEncoder {
+        let chip = self.file.chip.unwrap();
+        let mut encoder = MagneticEncoder::find(chip.name, 0).unwrap();
+        encoder.noise = if chip.frozen_after.is_some() { 3 } else { 0 };
+        encoder
+    }
 }
 
 /// What a board tells of the motor: the electrical angle at the angle zero, in counts.
@@ -74,6 +82,14 @@ fn knobs() -> &'static [Knob; 2] {
 
 /// A board with a program, whose motor has its magnets there.
 fn boot(knob: &Knob, magnets: f64) -> Held {
+    let chip = knob.encoder();
+    let mut held = off(knob, magnets, Some(chip));
+    held.bench.run(200);
+    held
+}
+
+/// The same before its first instruction, with a chip or without one.
+fn off(knob: &Knob, magnets: f64, chip: Option<MagneticEncoder>) -> Held {
     let Knob { file, transducers, bridge, program } = knob;
     let drive = bridge.current_loop.drive();
     let hand = Arc::<Mutex<f64>>::default();
@@ -83,8 +99,7 @@ fn boot(knob: &Knob, magnets: f64) -> Held {
     circuit.motor = Some(wired_to(drive, [0, 1, 2], magnets));
     circuit.supply = supply(drive);
     let board = bench.board_mut();
-    (board.magnetic, board.gates) = (MagneticEncoder::find("mt6701", 0), Some(Vec::new()));
-    bench.run(200);
+    (board.magnetic, board.gates) = (chip, Some(Vec::new()));
     Held { bench, hand }
 }
 
@@ -134,22 +149,29 @@ fn the_phase_of_another_motor_is_found_out() {
 /// Each code is that of the angle that was read for its period.
 #[test]
 fn the_codes_are_the_host_s() {
+    check_codes(&knobs()[1]);
+}
+
+fn check_codes(knob: &Knob) {
     const PERIODS: usize = 4000;
-    let Knob { file, transducers, .. } = &knobs()[1];
+    let Knob { file, transducers, .. } = knob;
+    let chip = file.chip.unwrap();
     let certified = file.scene.certify().unwrap();
     let mut host = controller::<_, f32>(&certified, transducers).unwrap();
-    let mut held = boot(&knobs()[1], MAGNETS);
-    assert_eq!(held.bench.arm(), Outcome::Done);
+    let mut held = boot(knob, MAGNETS);
+    assert_eq!(held.bench.arm(), Outcome::Done, "{:?}", held.bench.fault());
     held.bench.run(600);
     let (mut pushed, mut count) = (0, 0);
+    let turn = transducers.counts_per_turn as i32;
     for period in 0..PERIODS {
         held.push(0.08 * (period as f64 * 0.004).sin());
         held.bench.run(1);
-        let board = held.bench.board();
-        let angle = board.magnetic.as_ref().unwrap().sampled;
+        let encoder = held.bench.board().magnetic.as_ref().unwrap();
+        // The answer in this transfer is that of the one before.
+        let angle = if chip.is_period_late { encoder.answered } else { encoder.sampled };
         // The hand turns it by more than half a turn.
-        let step = (angle as i32 - count).rem_euclid(1 << 14);
-        count += if step < 1 << 13 { step } else { step - (1 << 14) };
+        let step = (angle as i32 - count).rem_euclid(turn);
+        count += if step < turn / 2 { step } else { step - turn };
         // The code that the current loop follows from here on; the scene is late by the period before.
         let (code, expected) = (code(&mut held.bench), host.tick(count).code);
         if period > 10 {
@@ -164,7 +186,20 @@ fn the_codes_are_the_host_s() {
 /// The stated age leaves room for one transfer that fails: it is held. A second one takes the gates away.
 #[test]
 fn a_failed_transfer_is_held_and_two_are_a_fault() {
-    let mut held = leaning();
+    check_failures(
+        &knobs()[1],
+        [
+            (Failure::Bit(3), ReadingError::Checksum),
+            (Failure::Zeros, ReadingError::Zeros),
+            (Failure::Ones, ReadingError::Ones),
+            (Failure::WeakField, ReadingError::Field),
+        ],
+    );
+}
+
+fn check_failures(knob: &Knob, failures: [(Failure, ReadingError); 4]) {
+    let mut held = boot(knob, MAGNETS);
+    check_torque_of(&mut held, &knob.transducers, "by the stated phase");
     held.push(0.0);
     let bench = &mut held.bench;
     bench.run(1000);
@@ -172,20 +207,17 @@ fn a_failed_transfer_is_held_and_two_are_a_fault() {
         bench.board_mut().magnetic.as_mut().unwrap().failure = failure;
         bench.run_for(instants * INSTANT);
     };
-    for (failure, error) in [
-        (Failure::Bit(3), ReadingError::Checksum),
-        (Failure::Zeros, ReadingError::Zeros),
-        (Failure::Ones, ReadingError::Ones),
-        (Failure::WeakField, ReadingError::Field),
-    ] {
+    for (failure, error) in failures {
+        // The flag of an AS504x is in the next transfer, and stays until it is read.
+        let stays = error == ReadingError::Flag && knob.file.chip.unwrap().is_period_late;
         run_to_valley(bench);
-        for _ in 0..50 {
+        for _ in 0..if stays { 0 } else { 50 } {
             fail(bench, Some(failure), 1);
             fail(bench, None, 1);
         }
         assert_eq!((bench.fault(), bench.is_on()), (None, true), "{failure:?}");
         run_to_valley(bench);
-        fail(bench, Some(failure), 3);
+        fail(bench, Some(failure), 3 + u64::from(stays));
         let (now, off) = (bench.now(), off_since(gates(bench)));
         // The second transfer ends at the second update, and the interrupt comes a us later.
         let off = off.unwrap_or_else(|| panic!("{failure:?}: on"));
@@ -199,4 +231,139 @@ fn a_failed_transfer_is_held_and_two_are_a_fault() {
         assert_eq!(bench.arm(), Outcome::Done);
         bench.run(600);
     }
+}
+
+/// The scene with another chip.
+fn knob_with(chip: &str, age: &str, noise: u32) -> Knob {
+    let IndexOffset { counts, is_reversed } = offset();
+    let counts = match chip {
+        "mt6835" => counts << 7,
+        _ => counts,
+    };
+    let text = KNOB
+        .replace("mt6701", chip)
+        .replace("age = [4.5e-6, 4.2e-5]", &format!("age = {age}"))
+        .replace("noise = 2\n", &format!("noise = {noise}\n"))
+        .replace(
+            "[motor]\n",
+            &format!(
+                "[motor]\nindex_offset = {{ counts = {counts}, is_reversed = {is_reversed} }}\n"
+            ),
+        );
+    Knob::build(&format!("{chip}_knob"), &text)
+}
+
+#[test]
+fn an_mt6835_is_read_beside_the_bridge() {
+    let knob = knob_with("mt6835", "[4.5e-6, 4.2e-5]", 3);
+    check_codes(&knob);
+    check_failures(
+        &knob,
+        [
+            (Failure::Bit(9), ReadingError::Checksum),
+            (Failure::Zeros, ReadingError::Zeros),
+            (Failure::WeakField, ReadingError::Field),
+            (Failure::Flag, ReadingError::Flag),
+        ],
+    );
+}
+
+#[test]
+fn an_as5048a_is_read_beside_the_bridge() {
+    check_as504x(&knob_with("as5048a", "[1.16e-4, 2.51e-4]", 3));
+}
+
+#[test]
+fn an_as5047p_is_read_beside_the_bridge() {
+    check_as504x(&knob_with("as5047p", "[1.15e-4, 1.64e-4]", 3));
+}
+
+fn check_as504x(knob: &Knob) {
+    check_codes(knob);
+    check_failures(
+        knob,
+        [
+            (Failure::Bit(9), ReadingError::Parity),
+            (Failure::Zeros, ReadingError::Zeros),
+            (Failure::Ones, ReadingError::Ones),
+            (Failure::Flag, ReadingError::Flag),
+        ],
+    );
+    // No angle tells that there is no magnet: asked once, it stays a fault until the next reset.
+    let mut encoder = knob.encoder();
+    encoder.failure = Some(Failure::WeakField);
+    let mut held = off(knob, MAGNETS, Some(encoder));
+    check_refused(&mut held.bench, ReadingError::Field);
+    held.bench.board_mut().magnetic.as_mut().unwrap().failure = None;
+    check_refused(&mut held.bench, ReadingError::Field);
+    held.bench.machine.reset(Cause::Pin);
+    held.bench.run(200);
+    assert_eq!(held.bench.arm(), Outcome::Done);
+}
+
+/// Neither armed nor aligned: no gate is high, and the fault says why.
+fn check_refused(bench: &mut Bench, error: ReadingError) {
+    bench.run(200);
+    for _ in 0..2 {
+        bench.arm();
+        bench.run(50);
+        bench.request(|id| ToBoard::Align { id });
+        bench.run(50);
+    }
+    let (gates, error) = (gates(bench), error as u32);
+    assert!(!any_high(gates, 0, u64::MAX), "{error}: a gate was high");
+    let told = bench.fault();
+    assert!(
+        matches!(told, Some(Fault::EncoderReading { error: it, .. }) if it == error),
+        "{told:?}"
+    );
+}
+
+/// A wire at ground, one that nothing drives, and no magnet, before any torque; and then all is well.
+#[test]
+fn a_chip_that_is_not_there_is_a_fault_before_any_torque() {
+    for (failure, error) in [
+        (Some(Failure::Zeros), ReadingError::Zeros),
+        (Some(Failure::Ones), ReadingError::Ones),
+        (Some(Failure::WeakField), ReadingError::Field),
+        (None, ReadingError::Ones),
+    ] {
+        for knob in knobs() {
+            let mut encoder = knob.encoder();
+            encoder.failure = failure;
+            // Its zero is where a word of zeros is an angle.
+            let mut held = off(knob, MAGNETS, failure.map(|_| encoder));
+            check_refused(&mut held.bench, error);
+        }
+    }
+    let mut held = off(&knobs()[1], MAGNETS, None);
+    check_refused(&mut held.bench, ReadingError::Ones);
+    held.bench.board_mut().magnetic = Some(knobs()[1].encoder());
+    held.bench.run(20);
+    assert_eq!(held.bench.arm(), Outcome::Done);
+    held.bench.run(600);
+    assert_eq!((held.bench.fault(), held.bench.is_on()), (None, true));
+    // It disappears.
+    run_to_valley(&mut held.bench);
+    held.bench.board_mut().magnetic = None;
+    held.bench.run_for(3 * INSTANT);
+    assert!(off_since(gates(&held.bench)).is_some());
+    let error = ReadingError::Ones as u32;
+    assert_eq!(held.bench.fault(), Some(Fault::EncoderReading { error, allowed: 1 }));
+}
+
+/// All words of a handle that rests at zero are zeros. A wire at ground there is told by its level.
+#[test]
+fn a_knob_may_rest_at_zero() {
+    let mut held = boot(&knobs()[1], MAGNETS);
+    let bench = &mut held.bench;
+    assert_eq!(bench.arm(), Outcome::Done);
+    bench.run(4000);
+    assert_eq!((bench.fault(), bench.is_on(), bench.status().count), (None, true, 0));
+    run_to_valley(bench);
+    bench.board_mut().magnetic.as_mut().unwrap().failure = Some(Failure::Zeros);
+    bench.run_for(4 * INSTANT);
+    assert!(off_since(gates(bench)).is_some());
+    let error = ReadingError::Zeros as u32;
+    assert_eq!(bench.fault(), Some(Fault::EncoderReading { error, allowed: 1 }));
 }

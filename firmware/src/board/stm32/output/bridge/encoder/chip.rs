@@ -28,7 +28,7 @@ pub fn pace(setup: &'static Setup) {
 /// failed, the gates are off.
 #[inline(always)]
 pub fn position(setup: &'static Setup) -> RawCount {
-    magnetic::take(setup);
+    magnetic::take(setup, off);
     if let Some(fault) = magnetic::fault() {
         core::hint::cold_path();
         off();
