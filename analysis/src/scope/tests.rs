@@ -6,7 +6,7 @@ use haptic_servo::reset::ResetCause;
 use haptic_servo::servo_loop::{Frame, State};
 use haptic_servo::torque::LimitReason;
 use haptic_servo::wire::Discarded;
-use haptic_servo::wire::message::{ActiveParameters, BoardUnits, Changes, PreviousFault, Status};
+use haptic_servo::wire::message::{ActiveParameters, BoardUnits, PreviousFault, Status, Values};
 
 use super::history::History;
 use super::sample::{Sample, Scale};
@@ -59,7 +59,7 @@ fn connected() -> Scope {
     let budget = None;
     let connected = Connected { program, units: BOARD, previous_fault, budget };
     take(&mut scope, Event::Connected(connected));
-    let values = Changes::from_slice(&[(Parameter::Stiffness, 22.0)]).unwrap();
+    let values = Values::from_slice(&[(Parameter::Stiffness, 22.0)]).unwrap();
     take(
         &mut scope,
         Event::ActiveParameters(ActiveParameters { sets: 3, margin: Some(0.0015), values }),

@@ -52,6 +52,13 @@ pub enum BuildError {
     NoCargo(#[source] io::Error),
     #[error("{program} does not compile:\n{output}")]
     Compile { program: String, output: String },
+    /// The linker's error, by its bytes.
+    #[error(
+        "{program} takes {} bytes of flash on the board {board}, {over} more than the {allowed} that it may: give \
+         its tables of torques fewer values, or leave out `[anticogging]`, `[host]` or `encoder.chip`",
+        allowed + over
+    )]
+    Flash { program: String, board: String, over: u64, allowed: u64 },
 }
 
 /// The compiler that builds for the board.
@@ -337,11 +344,27 @@ impl Toolchain {
         cargo.envs(scene.map(|scene| (SCENE_VARIABLE, scene)));
         cargo.args(["--release", "--package", package, "--target", TARGET]);
         cargo.args(names.iter().flat_map(|name| ["--bin", name])).args(["--features", features]);
-        output_of(&names.join(", "), &mut cargo)?;
+        let built = output_of(&names.join(", "), &mut cargo);
+        built.map_err(|error| self.by_flash(error, features))?;
         let folder = self.target_folder().join(TARGET).join("release");
         let keep =
             |name: &&str| self.workspace.keep(&folder.join(name), &format!("{name}{suffix}"));
         names.iter().map(keep).collect()
+    }
+
+    /// An error of a program with these features, of which the first is its board: in bytes, where it is that the
+    /// program does not fit.
+    fn by_flash(&self, error: BuildError, features: &str) -> BuildError {
+        match (error, self.memory()) {
+            (BuildError::Compile { program, output }, Ok(Memory { flash: allowed, .. })) => {
+                let Some(over) = overflow_of_flash(&output) else {
+                    return BuildError::Compile { program, output };
+                };
+                let board = features.split(',').next().unwrap_or_default().into();
+                BuildError::Flash { program, board, over, allowed }
+            }
+            (error, _) => error,
+        }
     }
 
     /// Each compiler has its own folder: in a common folder each would rebuild the other's output.
@@ -394,6 +417,13 @@ fn executable(message: &str, name: &str) -> Option<PathBuf> {
     let message: serde_json::Value = serde_json::from_str(message).ok()?;
     let is_it = message["target"]["name"] == name && message["target"]["kind"][0] == "test";
     is_it.then(|| message["executable"].as_str().map(PathBuf::from)).flatten()
+}
+
+/// The bytes that a program has more than the flash, in the linker's output: it names each section that ends
+/// beyond.
+fn overflow_of_flash(output: &str) -> Option<u64> {
+    let ends = output.split("will not fit in region 'FLASH': overflowed by ").skip(1);
+    ends.filter_map(|end| end.split(' ').next()?.parse().ok()).max()
 }
 
 /// Builds a program with cargo; returns cargo's output.
@@ -487,4 +517,19 @@ fn own_cargo(folder: &Path) -> Command {
 
 fn variable(name: &str) -> Option<OsString> {
     std::env::var_os(name).filter(|value| !value.is_empty())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reads_by_how_much_a_program_overflows_the_flash() {
+        let output = "  = note: rust-lld: error: section '.text' will not fit in region 'FLASH': overflowed by 7 \
+                      bytes\n          rust-lld: error: section '.rodata' will not fit in region 'FLASH': \
+                      overflowed by 2307 bytes\n          rust-lld: error: section '.bss' will not fit in region \
+                      'RAM': overflowed by 9000 bytes\n";
+        assert_eq!(overflow_of_flash(output), Some(2307));
+        assert_eq!(overflow_of_flash("error: could not compile"), None);
+    }
 }

@@ -9,7 +9,7 @@ use core::num::NonZeroU32;
 
 use serde::{Deserialize, Serialize};
 
-pub use super::changes::{Changes, Id, MAX_CHANGES};
+pub use super::changes::{Changes, Id, MAX_CHANGES, Values};
 use super::decoder::Discarded;
 use super::description::Description;
 use super::host::{HostReport, HostRequest};
@@ -136,7 +136,7 @@ pub struct ActiveParameters {
     /// Damping in N m s/rad that the device may lose while these parameters run; `None`: unknown.
     pub margin: Option<f64>,
     /// The numbers that can be changed.
-    pub values: Changes,
+    pub values: Values,
 }
 
 /// Result of a request.

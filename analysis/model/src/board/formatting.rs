@@ -3,7 +3,7 @@
 use haptic_servo::certificate::Parameter;
 use haptic_servo::tuning;
 use haptic_servo::wire::Discarded;
-use haptic_servo::wire::message::{ActiveParameters, BoardUnits, Changes, PreviousFault, Status};
+use haptic_servo::wire::message::{ActiveParameters, BoardUnits, PreviousFault, Status};
 
 use super::history::History;
 use crate::quantity::significant;
@@ -14,7 +14,7 @@ pub fn numbers(parameters: &ActiveParameters) -> String {
 }
 
 /// Parameters as they are typed.
-pub fn changes(changes: &Changes) -> String {
+pub fn changes(changes: &[(Parameter, f64)]) -> String {
     named(changes.iter().map(|(parameter, value)| (name(*parameter), *value)).collect::<Vec<_>>())
 }
 

@@ -29,8 +29,8 @@ use super::description::Description;
 use super::frame::CHECKSUM;
 use super::host::{HostCommand, HostReport, HostRequest, HostState};
 use super::message::{
-    ActiveParameters, BoardUnits, Changes, FaultCode, Id, LONGEST_TO_BOARD, MAX_CHANGES, Outcome,
-    Refusal, Status, ToBoardWith, ToHostWith,
+    ActiveParameters, BoardUnits, Changes, FaultCode, Id, LONGEST_TO_BOARD, Outcome, Refusal,
+    Status, ToBoardWith, ToHostWith,
 };
 use crate::boot::Program;
 use crate::certificate::scene_data;
@@ -376,7 +376,7 @@ where
     fn parameters(&self) -> ActiveParameters {
         let Set { scene, margin } = &self.active;
         let named = |parameter| tuning::get(scene, parameter).map(|value| (parameter, value));
-        let values = tuning::parameters(scene).iter().filter_map(named).take(MAX_CHANGES).collect();
+        let values = tuning::parameters(scene).iter().filter_map(named).collect();
         ActiveParameters { sets: self.revision, margin: *margin, values }
     }
 

@@ -427,11 +427,22 @@ fn a_frame_may_take_its_time() {
     assert_eq!(bench.run(500), [done(5)]);
 }
 
+/// Also where there are more than one set may change.
+#[test]
+fn every_tunable_number_is_listed() {
+    let mut bench = Bench::new(None);
+    bench.session.active.scene = largest_description().scene;
+    let listed = bench.running().values;
+    let named: Vec<_> =
+        listed.iter().filter_map(|(parameter, _)| tuning::name(*parameter)).collect();
+    assert_eq!(named, tuning::TUNABLE.map(|(name, _)| name));
+}
+
 #[test]
 fn every_message_fits_its_frame() {
     let pairs = [(Parameter::UnitZeros, -1.0e-300); super::super::message::MAX_CHANGES];
     let changes = Changes::from_slice(&pairs).unwrap();
-    let set = ToBoard::Set { id: u16::MAX, changes: changes.clone() };
+    let set = ToBoard::Set { id: u16::MAX, changes };
     assert!(postcard::to_slice(&set, &mut [0; LONGEST_TO_BOARD]).is_ok());
     let mut batch = crate::wire::telemetry::Batch::new();
     let (limit, state) = (crate::torque::LimitReason::None, State::Faulted);
@@ -449,7 +460,10 @@ fn every_message_fits_its_frame() {
         ToHost::ActiveParameters(ActiveParameters {
             sets: u32::MAX,
             margin: Some(1.0),
-            values: changes,
+            values: tuning::TUNABLE
+                .map(|(_, parameter)| (parameter, -1.0e-300))
+                .into_iter()
+                .collect(),
         }),
         ToHost::Described(largest_description()),
     ] {
