@@ -9,7 +9,6 @@ use haptic_client::simulated::{self, Pacing, SimulatedBoardError};
 use haptic_client::{
     Address, Link, LinkError, Request, RequestResult, StreamError, StreamTick, change,
 };
-use haptic_model::board::sample::Sample;
 use haptic_model::board::timing::stream_every;
 use haptic_model::board::{Report, budget, formatting};
 use haptic_model::file::Purpose;
@@ -143,7 +142,10 @@ impl Connection {
     }
 
     fn close(&self, py: Python<'_>) -> Result<(), BoardFailure> {
-        py.detach(|| Ok(*self.lock()? = None))
+        py.detach(|| {
+            *self.lock()? = None;
+            Ok(())
+        })
     }
 
     /// Name of the program, and the period of its servo in s.
