@@ -181,16 +181,20 @@ fn the_host_measures_a_device_with_a_brushless_motor() {
     measured(&brushless(None));
 }
 
-/// The same motor, whose angle an MT6701 reads: selected 5.5 us before each update, it makes the delay longer.
+/// An update: the virtual board moves a motor's shaft at each update, so that the chip, which is selected 5.5 us
+/// before it, has the position of the update before.
+const AGE: f64 = 2.5e-5;
+
+/// The same motor, whose angle an MT6701 reads: it makes the delay longer.
 #[test]
 fn the_host_measures_a_device_by_a_chip() {
-    measured(&brushless(Some((&MT6701, 5.5e-6))));
+    measured(&brushless(Some((&MT6701, AGE))));
 }
 
 /// A reading that fails beyond a late one ends the sweep, with the gates off.
 #[test]
 fn a_sweep_ends_where_the_chip_disappears() {
-    let what = brushless(Some((&MT6701, 5.5e-6)));
+    let what = brushless(Some((&MT6701, AGE)));
     let mut bench = booted(&what);
     circuit(&mut bench).supply = supply(&what.drive);
     bench.run(20);
