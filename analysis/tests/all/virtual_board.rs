@@ -114,20 +114,26 @@ fn a_board_with_a_bridge_is_armed_and_watched_over_its_serial_port() {
     assert_eq!(tuned(&board, &[]).1["parameters"]["stiffness"], 15.0);
 }
 
-/// On a board whose torque leaves by its DAC. The current loop of a bridge leaves too little flash for both.
+/// The largest programs: the current loop of a bridge, what opposes cogging, and a host or a chip.
 #[test]
 #[ignore = "builds for minutes"]
-fn a_host_fits_a_board_beside_what_opposes_cogging() {
+fn a_host_or_a_chip_fits_a_bridge_beside_what_opposes_cogging() {
     let folder = TempDir::new().unwrap();
-    let scene = block("docs/host-torque.md", "wheel")
-        .replace("stiffness = 44.0", "stiffness = 43.0")
-        .replace("full_scale = 2.0", "full_scale = 2.0, counts_per_turn = 10000");
-    let cogging = "\n[anticogging]\ntorque = [0, 0.01, 0.02, 0.01, 0, -0.01, -0.02, -0.01]\n";
-    let file = folder.path().join("cogging.toml");
-    std::fs::write(&file, scene + cogging).unwrap();
-    let file = file.to_str().unwrap();
-    let built = haptic(&["flash", "--build-only", "--board", "nucleo-g474re", file]);
-    assert_eq!(built.status.code(), Some(0), "{}", String::from_utf8_lossy(&built.stderr));
+    let cogging = "\n[anticogging]\ntorque = [0, 1e-4, 2e-4, 1e-4, 0, -1e-4, -2e-4, -1e-4]\n";
+    let chip = include_str!("../../virtual-board/tests/board/bridge/magnetic_knob.toml");
+    for (name, scene) in [
+        (
+            "host.toml",
+            block("docs/host-torque.md", "direct").replace("torque = 0.6 ", "torque = 0.5 "),
+        ),
+        ("chip.toml", chip.replace("full_scale = 0.3", "full_scale = 0.35")),
+    ] {
+        let file = folder.path().join(name);
+        std::fs::write(&file, scene + cogging).unwrap();
+        let file = file.to_str().unwrap();
+        let built = haptic(&["flash", "--build-only", "--board", "b-g431b-esc1", file]);
+        assert_eq!(built.status.code(), Some(0), "{}", String::from_utf8_lossy(&built.stderr));
+    }
 }
 
 /// A host that wants energy sends its commands over the serial port. The servo on this machine gets each in the

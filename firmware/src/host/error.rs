@@ -43,6 +43,7 @@ sentences! {
 }
 
 impl HostError {
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(super) const fn unless_positive(
         name: &'static str,
         value: f64,

@@ -129,11 +129,13 @@ impl Amplifier {
         })
     }
 
+    #[cfg_attr(target_os = "none", inline(never))]
     const fn near(value: f64) -> i32 {
         let scaled = value * (1 << Self::BITS) as f64;
         (if scaled < 0.0 { scaled - 0.5 } else { scaled + 0.5 }) as i32
     }
 
+    #[cfg_attr(target_os = "none", inline(never))]
     const fn above(value: f64) -> i32 {
         (value * (1 << Self::BITS) as f64) as i32 + 1
     }

@@ -34,6 +34,7 @@ impl Interval {
     }
 
     /// The double itself; [`Interval::ENTIRE`] for NaN and infinities.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub const fn exact(value: f64) -> Self {
         if value.is_finite() { Self { lo: value, hi: value } } else { Self::ENTIRE }
     }
@@ -116,6 +117,7 @@ impl Interval {
     }
 
     /// `self - other`.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub const fn sub(self, other: Self) -> Self {
         self.add(other.neg())
     }
