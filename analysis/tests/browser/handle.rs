@@ -62,10 +62,10 @@ pub fn the_handle_of_the_page_runs_the_servo_of_the_program() {
 }
 
 /// The buttons change the counts that the servo reads; the fields of the cogging and of the share of it that is opposed
-/// say so.
+/// say so. Readings that fail take the torque, and the page says why.
 pub fn the_encoder_of_the_handle_is_exchanged() {
-    let (_folder, mut page) =
-        opened(1280, include_str!("../../explore/src/presets/gimbal_knob.toml"));
+    const KNOB: &str = include_str!("../../explore/src/presets/gimbal_knob.toml");
+    let (folder, mut page) = opened(1280, KNOB);
     page.click("#handle-settings summary");
     let counts = "window.haptic.dragged().countsPerTurn";
     page.wait_for(&format!("{counts} === 16384"));
@@ -81,6 +81,14 @@ pub fn the_encoder_of_the_handle_is_exchanged() {
         let label = format!("document.querySelector('[for=field-{field}]').textContent");
         assert_eq!(page.value(&label), words);
     }
+    page.assert_silent();
+    let failing = format!("{KNOB}\n[simulation]\nsamples = 1000\ndropped = {{ every = 7 }}\n");
+    page.open_file(&explore(folder.path(), &failing));
+    page.click("#handle-push");
+    page.wait_for(
+        "document.getElementById('handle-state').textContent.includes('No torque. The fault encoder-reading: more \
+         readings of the encoder in a row have failed than `encoder.dropped` = 0')",
+    );
     page.assert_silent();
 }
 
