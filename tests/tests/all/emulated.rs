@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use analysis::emulator::{Client, Emulator, EmulatorError, EmulatorReport};
-use analysis::program::{damper_wall, free_mode, knob};
+use analysis::program::{damper_wall, delayed_spring, free_mode, knob};
 use analysis::studies::bench;
 use analysis::studies::bench::on_target::{contact_instructions, live_set, profiles};
 use analysis::studies::number_format::{Motion, cost};
@@ -301,5 +301,7 @@ fn two_scenes_give_the_host_s_codes() {
 fn free_mode_and_fixed_point_give_the_host_s_codes() {
     emulated!(free_mode, NumberFormat::F32, f32, u64::MAX);
     emulated!(damper_wall, NumberFormat::Fixed, damper_wall::Fixed, u64::MAX);
+    emulated!(delayed_spring, NumberFormat::Fixed, delayed_spring::Fixed, u64::MAX);
+    emulated!(free_mode, NumberFormat::Fixed, free_mode::Fixed, u64::MAX);
     emulated!(knob, NumberFormat::Fixed, knob::Fixed, u64::MAX);
 }

@@ -265,6 +265,7 @@ proptest! {
         if let Reached::At(omega) = found.reached {
             let reached = bound_at(&device, exact(omega));
             prop_assert!((&reached - exact(hi)) <= exact(1e-15 * hi + 1e-30 * device.damping()), "{} {found:?}", reached.to_f64().unwrap());
+            prop_assert!(grid <= exact(hi + 1e-9 * (hi + device.damping())), "{} {found:?}", grid.to_f64().unwrap());
         }
     }
 }
