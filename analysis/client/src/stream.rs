@@ -76,7 +76,8 @@ struct Counts {
 
 impl Link {
     /// Sends a torque in N m for the last motion that the board has reported, `rate` times a second, until
-    /// `function` returns none; while no report comes, it sends the last torque again. On the way from one torque to the next the board moves along a line if `is_smooth`.
+    /// `function` returns none; while no report comes, it sends the last torque again. On the way from one torque
+    /// to the next the board moves along a line if `is_smooth`.
     ///
     /// The stream ends with a torque of zero. If this program stops, the board fades the torque out by itself.
     ///

@@ -139,12 +139,12 @@ pub fn refusal_in_words(
 ) -> RequestResult {
     let changes = request.changes();
     let judged = |request: &Request| judge(request, budget, description, parameters);
+    let without_changes = || judged(&Request::Set(Changes::new())).err();
     // What holds without the changes, too, is not the board's reason: it certifies with the readings of its encoder,
     // which it does not send.
-    let unchanged = judged(&Request::Set(Changes::new())).err();
     if let Err(refused) = judged(request)
         && refused.0.step() == step
-        && unchanged.is_none_or(|before| before.1 != refused.1)
+        && without_changes().is_none_or(|before| before.1 != refused.1)
     {
         return RequestResult::Refused(refused.1);
     }

@@ -14,17 +14,17 @@ words! {
     #[derive(Default)]
     #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
     Method {
-    /// Matrix exponential: exact for every step.
-    #[default]
-    Exact "exact",
-    /// Explicit Euler: all states from the derivatives at the start of the step.
-    Euler "euler",
-    /// Semi-implicit Euler: the positions from the velocities at the end of the step.
-    SemiImplicit "semi-implicit",
-    /// Fourth-order Runge-Kutta.
-    Rk4 "rk4",
-    /// Trapezoidal rule.
-    Tustin "tustin",
+        /// Matrix exponential: exact for every step.
+        #[default]
+        Exact "exact",
+        /// Explicit Euler: all states from the derivatives at the start of the step.
+        Euler "euler",
+        /// Semi-implicit Euler: the positions from the velocities at the end of the step.
+        SemiImplicit "semi-implicit",
+        /// Fourth-order Runge-Kutta.
+        Rk4 "rk4",
+        /// Trapezoidal rule.
+        Tustin "tustin",
     }
 }
 

@@ -130,7 +130,6 @@ fn readings_of_a_varying_age_give_no_more_than_the_budget() {
     for (late, encoder) in &ENCODERS {
         let search = Search::with_age(*late, encoder);
         let most = (0..600).map(|run| search.most::<1>(run)).fold(0.0, f64::max);
-        println!("{late}: {most}");
         assert!((0.15..=1.0).contains(&most), "{late}: {most}");
     }
 }
