@@ -222,7 +222,10 @@ fn streamed(ticks: usize, late: usize) -> (Link, JoinHandle<Vec<f32>>) {
                 && let Some(message) = waiting.pop_front()
             {
                 let mut buffer = [0; 128];
-                stream.write_all(encode(&message, &mut buffer).unwrap()).unwrap();
+                // A client that has left waits for no answer.
+                if stream.write_all(encode(&message, &mut buffer).unwrap()).is_err() {
+                    return torques;
+                }
             }
         }
         torques
