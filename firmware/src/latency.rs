@@ -47,7 +47,7 @@ pub struct Latency {
     pub actuator_response: TimeRange,
     /// Updates of the amplifier's current loop per period; 0: its lag is continuous. At each update the
     /// torque is that of the lag, and between two updates it changes linearly. The output delay, without the age
-    /// of a reading, must be a whole number of update intervals, and there must be no sensor lag.
+    /// of a reading, must be a whole number of update intervals.
     pub actuator_updates: u16,
     /// The readings of the encoder, whose times are parts of the times above: set by [`Latency::read_by`].
     ///
@@ -145,9 +145,8 @@ impl Latency {
     /// loop cannot have.
     #[inline(never)]
     pub const fn delay_in_updates(&self, period: f64) -> Option<Interval> {
-        let is_lag_alone = self.sensor_lag.is_zero() && self.actuator_response.is_zero();
-        let is_lagging = self.actuator_lag.least > 0.0;
-        if !(is_lag_alone && is_lagging && self.output_delay.is_exact()) {
+        let is_lagging = self.actuator_lag.least > 0.0 && self.actuator_response.is_zero();
+        if !(is_lagging && self.output_delay.is_exact()) {
             return None;
         }
         let update = self.nearest_update(period);
@@ -166,6 +165,20 @@ impl Latency {
     /// Whether, from the instant of a reading, a torque begins between two updates of the current loop.
     pub const fn is_between_updates(&self) -> bool {
         self.actuator_updates > 0 && !self.encoder.age.is_zero()
+    }
+
+    /// Whether a sensor filter stands beside an amplifier that is updated in the period. Then the certificate has a
+    /// continuous lag in place of the updates, and a torque that comes [later](Self::later_than_lag) than it.
+    pub const fn is_filtered_beside_updates(&self) -> bool {
+        self.actuator_updates > 0 && !self.sensor_lag.is_zero()
+    }
+
+    /// The most in periods by which the torque of an amplifier that is updated in the period comes later than that of
+    /// a continuous lag (theory, section 13.8).
+    pub const fn later_than_lag(&self, period: f64) -> Interval {
+        let between = Interval::ONE.div(Interval::exact(self.actuator_updates as f64));
+        let lag = Interval::decimal(self.actuator_lag.least).div(Interval::decimal(period));
+        between.mul(between).div(lag.mul(Interval::exact(8.0))).min(between)
     }
 
     /// Largest sum in s of the jitters of a scene with this period and an environment that is late by a
@@ -218,7 +231,12 @@ impl Latency {
             0 => (self.torque_delay().most + self.total_jitter()) / period,
             updates => {
                 let late = self.encoder.age.middle() + self.total_jitter();
-                self.nearest_update(period) as f64 / updates as f64 + late / period
+                let delay = self.nearest_update(period) as f64 / updates as f64 + late / period;
+                if self.is_filtered_beside_updates() {
+                    delay + self.later_than_lag(period).hi()
+                } else {
+                    delay
+                }
             }
         };
         (latest * (1.0 + ROUNDING)) as usize

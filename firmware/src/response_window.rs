@@ -90,7 +90,12 @@ impl ResponseWindow {
         if !latency.jitters_twice() && latency.total_jitter() <= latency.output_delay.least {
             early.delay = early.delay.and(Interval::new(0.0, f64::INFINITY));
         }
-        late.delay = late.delay.add(jitter);
+        let later = if UPDATES && latency.is_filtered_beside_updates() {
+            latency.later_than_lag(period)
+        } else {
+            Interval::ZERO
+        };
+        late.delay = late.delay.add(jitter).add(later);
         let between_counts = match worst_period {
             Some(worst) if worst != period => {
                 let is_alone =
@@ -103,11 +108,12 @@ impl ResponseWindow {
             }
             _ => Interval::ONE,
         };
-        let apart = spread(delay).div(t).add(jitter.double());
+        let spread = spread(delay).div(t).add(later);
+        let apart = spread.add(jitter.double());
         if latency.jitters_twice() && !(is_exact && apart.hi() < ALMOST) {
             return None;
         }
-        let width = between_counts.add(spread(delay).div(t)).add(jitter.double()).add(longer_lags);
+        let width = between_counts.add(spread).add(jitter.double()).add(longer_lags);
         let width = width.add(both);
         let mut out = Self {
             width,
@@ -213,12 +219,14 @@ impl End {
         let updates = if UPDATES { latency.actuator_updates } else { 0 };
         let lags = [Interval::decimal(lags[0]).div(t), Interval::decimal(lags[1]).div(t)];
         let weights = some!(weights(lags));
-        let (delay, held_back) = match updates {
-            0 => (Interval::decimal(delay).div(t), lags[0].add(lags[1])),
-            _ => match latency.delay_in_updates(t.midpoint()) {
-                Some(delay) => (delay, SampledLag::of(updates, lags[0]).held()),
-                None => return None,
-            },
+        let delay = match updates {
+            0 => Interval::decimal(delay).div(t),
+            _ => some!(latency.delay_in_updates(t.midpoint())),
+        };
+        let updates = if latency.is_filtered_beside_updates() { 0 } else { updates };
+        let held_back = match updates {
+            0 => lags[0].add(lags[1]),
+            _ => SampledLag::of(updates, lags[0]).held(),
         };
         Some(Self { delay, lags, weights, held_back, updates })
     }

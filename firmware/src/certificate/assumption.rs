@@ -294,12 +294,7 @@ fn write_latency(f: &mut fmt::Formatter<'_>, latency: &Latency) -> fmt::Result {
     if latency.jitters_twice() {
         write!(f, ", while its count is at most {} s early or late", ShortF64(*count_jitter))?;
     }
-    for (what, lag) in [("amplifier", actuator_lag), ("filter of the encoder", sensor_lag)] {
-        if !lag.is_zero() {
-            write!(f, "; the {what} is a first-order lag of ")?;
-            write_time(f, *lag)?;
-        }
-    }
+    write_lag(f, "amplifier", *actuator_lag)?;
     if *actuator_updates > 0 {
         write!(
             f,
@@ -307,6 +302,7 @@ fn write_latency(f: &mut fmt::Formatter<'_>, latency: &Latency) -> fmt::Result {
              updates"
         )?;
     }
+    write_lag(f, "filter of the encoder", *sensor_lag)?;
     if encoder.window > 0.0 {
         write!(f, "; a reading is a mean of positions over {} s", ShortF64(encoder.window))?;
     } else if !actuator_response.is_zero() {
@@ -318,6 +314,14 @@ fn write_latency(f: &mut fmt::Formatter<'_>, latency: &Latency) -> fmt::Result {
         )?;
     }
     Ok(())
+}
+
+fn write_lag(f: &mut fmt::Formatter<'_>, of: &str, lag: TimeRange) -> fmt::Result {
+    if lag.is_zero() {
+        return Ok(());
+    }
+    write!(f, "; the {of} is a first-order lag of ")?;
+    write_time(f, lag)
 }
 
 /// Writes the conditions on the encoder's readings.

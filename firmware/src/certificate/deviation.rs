@@ -32,8 +32,12 @@ impl Deviation {
                 0 if n.linearity.is_zero() => Some(Self::NONE),
                 0 => Some(Self::through_inl(lagging, n)),
                 // The ripple of an amplifier of no known shape is that of the worst, and the window may be
-                // better.
-                1 if !latency.actuator_response.is_zero() => Self::within_window(lagging, n),
+                // better. Updates beside a sensor filter are known within a window only.
+                1 if !latency.actuator_response.is_zero()
+                    || latency.is_filtered_beside_updates() =>
+                {
+                    Self::within_window(lagging, n)
+                }
                 _ => None,
             };
         }

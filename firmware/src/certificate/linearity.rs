@@ -13,8 +13,8 @@ pub(super) const fn is_nonlinear(scene: &Scene) -> bool {
 }
 
 /// Whether a scene without a coupling is judged by its index at the port although it is linear: the exact
-/// rule has no proof for missed updates beside latency, and none for jitter that costs a spring nothing. For
-/// torques and counts that deviate at the same time the exact rule alone has a proof. Of an encoder's age, window,
+/// rule has no proof for missed updates beside latency, and none for jitter, or updates beside a sensor filter, that
+/// cost a spring nothing. For torques and counts that deviate at the same time the exact rule alone has a proof. Of an encoder's age, window,
 /// nonlinearity and dropped readings the index of a spring takes no more than the exact rule does.
 const fn replaces_exact_rule(scene: &Scene) -> bool {
     let (latency, encoder) = (&scene.latency, scene.latency.encoder);
@@ -25,10 +25,12 @@ const fn replaces_exact_rule(scene: &Scene) -> bool {
     if parts.profile.is_some() || matches!(&parts.wall, Some(wall) if wall.stiffness < 0.0) {
         return false;
     }
-    let has_one_jitter = latency.total_jitter() > 0.0 && !latency.jitters_twice();
+    let is_in_window = latency.total_jitter() > 0.0 || latency.is_filtered_beside_updates();
+    let is_in_one_window = is_in_window && !latency.jitters_twice();
     let misses_updates = scene.timing.longer_period().is_some();
     let is_damped = parts.is_damped();
-    let is_late_or_missed = !latency.is_none() && (misses_updates || !is_damped && has_one_jitter);
+    let is_late_or_missed =
+        !latency.is_none() && (misses_updates || !is_damped && is_in_one_window);
     let is_beyond_exact_rule = match is_damped {
         true => encoder.linearity != 0.0 && (misses_updates || !is_delay_alone(latency)),
         false => {

@@ -29,9 +29,13 @@ struct Cells {
 }
 
 impl Cells {
-    /// `None` if a current loop is updated and its delay is not a whole number of updates.
+    /// `None` if a current loop is updated and its delay is not a whole number of updates, or a sensor filter stands
+    /// beside it.
     const fn of(lagging: &Lagging, period: Interval) -> Option<Self> {
         let latency = &lagging.latency;
+        if latency.is_filtered_beside_updates() {
+            return None;
+        }
         Some(Self {
             delay: latency.output_delay,
             actuator: latency.actuator_lag,

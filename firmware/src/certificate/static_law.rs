@@ -108,7 +108,8 @@ pub(super) const fn share_of_damper(scene: &Scene, n: &LoopIntervals, reading: f
 
 /// Whether the index is known to be the least one for a spring.
 const fn is_exact(latency: &Latency, n: &LoopIntervals) -> bool {
-    let is_in_updates = latency.actuator_updates == 0 || latency.total_jitter() == 0.0;
+    let is_in_updates = latency.actuator_updates == 0
+        || latency.total_jitter() == 0.0 && !latency.is_filtered_beside_updates();
     let drops = latency.encoder.dropped > 0;
     is_in_updates && !latency.jitters_twice() && !drops && (!n.misses_updates || latency.is_none())
 }
@@ -411,7 +412,11 @@ const fn oldest(times: &Times<'_>, window: bool, n: &LoopIntervals, end: End) ->
     };
     let response = if window { 0.0 } else { end.time(latency.actuator_response.most, n) };
     let jitter = end.time(latency.total_jitter(), n);
-    let sum = Interval::exact(delay).add(Interval::exact(response)).add(Interval::exact(jitter));
+    let mut sum =
+        Interval::exact(delay).add(Interval::exact(response)).add(Interval::exact(jitter));
+    if latency.is_filtered_beside_updates() {
+        sum = sum.add(latency.later_than_lag(n.period.midpoint()));
+    }
     if times.dropped == 0 {
         return Some(end.of(sum));
     }
@@ -440,7 +445,8 @@ impl Tail {
     };
 
     /// The tail of a time constant in s after `part` of a period. Beside jitter the tick may end between two
-    /// updates of a current loop, and `u` is at most that at the update before.
+    /// updates of a current loop, and `u` is at most that at the update before. Beside a sensor filter the lag is
+    /// continuous.
     #[inline(never)]
     const fn of(
         tau: f64,
@@ -456,6 +462,10 @@ impl Tail {
         let tau = Interval::exact(end.time(tau, n));
         let mut over = Interval::ONE.sub(part);
         let (lag, squared) = match latency.actuator_updates {
+            _ if latency.is_filtered_beside_updates() => {
+                let lag = Decay::of(tau, over);
+                (lag, lag.unspread)
+            }
             0 => {
                 let lag = Decay::of(tau, over);
                 (lag, lag.unspread)

@@ -372,14 +372,8 @@ const fn check_updates(scene: &Scene) -> Checked {
         _ if latency.actuator_lag.least <= 0.0 => {
             (Parameter::ActuatorLag, latency.actuator_lag.least, BESIDE_UPDATES[1], None)
         }
-        _ if !latency.sensor_lag.is_zero() => {
-            (Parameter::SensorLag, latency.sensor_lag.most, BESIDE_UPDATES[2], None)
-        }
-        _ if !latency.actuator_response.is_zero() => {
-            (Parameter::ActuatorResponse, latency.actuator_response.most, BESIDE_UPDATES[2], None)
-        }
         _ if !latency.output_delay.is_exact() => {
-            (Parameter::OutputDelay, latency.output_delay.most, BESIDE_UPDATES[3], None)
+            (Parameter::OutputDelay, latency.output_delay.most, BESIDE_UPDATES[2], None)
         }
         _ if latency.delay_in_updates(period).is_none() => {
             let nearest = latency.delay_at_update(latency.nearest_update(period), period);
@@ -437,10 +431,9 @@ const NO_RESPONSE_BESIDE: &str = "0 beside a response or a lag of the amplifier"
 const HELD_WHILE_DROPPED: &str = "as long as the torque is held while readings are dropped, because only a torque \
                                   of one position may come from an older reading: at least";
 
-const BESIDE_UPDATES: [&str; 4] = [
+const BESIDE_UPDATES: [&str; 3] = [
     "that of the servo where the amplifier is updated in each period:",
     "greater than 0 where the amplifier is updated in each period",
-    "0 where the amplifier is updated in each period",
     "known exactly where the amplifier is updated in each period",
 ];
 const NO_WHOLE_UPDATES: &str =

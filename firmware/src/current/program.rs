@@ -6,7 +6,6 @@ use super::current_loop::CurrentLoop;
 use super::design::OVER_CURRENT;
 use super::drive::DriveError;
 use super::regeneration::{Bus, Push};
-use crate::encoder_reading::EncoderReading;
 use crate::latency::Latency;
 use crate::magnetic::{Chip, Transfers};
 use crate::output_timing::OutputTiming;
@@ -21,6 +20,14 @@ const SAME: f64 = 1e-9;
 /// Largest part of an electrical turn that the phase may turn in the age of a reading: 0.1 rad, which reduces the
 /// torque by 0.5 per cent.
 const LARGEST_TURN: f64 = 1.0 / 64.0;
+
+/// How far the positions of an encoder are off.
+#[derive(Clone, Copy)]
+struct PositionError {
+    counts: f64,
+    /// Instants by which they are late.
+    late: f64,
+}
 
 impl CurrentLoop {
     /// The latency of a scene with this current loop, for a program's output timing.
@@ -109,8 +116,9 @@ impl CurrentLoop {
         // A position whose age is another than that before is off by the way between them.
         let late = 2.0 * encoder.deviation_of_age() + encoder.dropped as f64 * period;
         let moved = late * speed * transducers.counts_per_turn / TAU;
-        self.check_acceleration(device, speed, encoder.steps() + moved);
-        or_refuse!(self.check_age(encoder, period, speed));
+        let off = PositionError { counts: encoder.steps() + moved, late: self.late(latency) };
+        self.check_acceleration(device, speed, off);
+        or_refuse!(self.check_age(latency, period, speed));
     }
 
     /// The transfers of a chip on the board of this loop, which are at its updates.
@@ -119,18 +127,19 @@ impl CurrentLoop {
         Transfers::before_update(chip, self.instant(), clock)
     }
 
-    /// Checks that the phase of the motor is known well enough from readings of this encoder, at a period and a
-    /// largest speed in s and rad/s.
+    /// Checks that the phase of the motor is known well enough from the readings of a scene with this latency, at a
+    /// period and a largest speed in s and rad/s. A filter makes them older by its time constant.
     ///
     /// # Errors
     /// If it turns too far in their age.
     pub const fn check_age(
         &self,
-        encoder: &EncoderReading,
+        latency: &Latency,
         period: f64,
         speed: f64,
     ) -> Result<(), DriveError> {
-        let age = encoder.age.most + encoder.dropped as f64 * period;
+        let encoder = latency.encoder;
+        let age = encoder.age.most + encoder.dropped as f64 * period + latency.sensor_lag.most;
         let frequency = self.winding().pole_pairs() as f64 * speed / TAU;
         let turned = frequency * age;
         if turned <= LARGEST_TURN {
@@ -219,26 +228,32 @@ impl CurrentLoop {
     /// The largest acceleration of the handle in rad/s^2 that supervision never takes for a fault (equation 64), with a
     /// quadrature encoder.
     pub const fn largest_acceleration(&self) -> f64 {
-        self.largest_acceleration_with(1.0)
+        self.largest_acceleration_with(PositionError { counts: 1.0, late: 0.0 })
     }
 
-    /// The same with an encoder whose positions are off by up to so many counts.
-    const fn largest_acceleration_with(&self, counts: f64) -> f64 {
+    /// The instants by which readings are later than the feedback, at most (theory, section 15.10).
+    const fn late(&self, latency: &Latency) -> f64 {
+        let instant = self.instant();
+        (latency.encoder.age.most / instant - 2.0).max(0.0) + latency.sensor_lag.most / instant
+    }
+
+    /// The same with an encoder whose positions are so far off.
+    const fn largest_acceleration_with(&self, off: PositionError) -> f64 {
         let (limits, source) = (&self.limits, self.torque_source());
         // By each of the two speeds that are compared.
-        let off = 2.0 * limits.smoothing as f64 * limits.amps_of_motion as f64 * counts;
+        let amps = 2.0 * limits.smoothing as f64 * limits.amps_of_motion as f64 * off.counts;
         let deviation = source.deviation_by(self.torque_per_amp(), source.instant);
-        let delay = 1.0 / source.feedback - 1.0;
-        (limits.unexplained as f64 - off) / (2.0 * delay * deviation)
+        let delay = 1.0 / source.feedback - 1.0 + off.late;
+        (limits.unexplained as f64 - amps) / (2.0 * delay * deviation)
     }
 
     /// Checks that the device accelerates no more by motor and damping than supervision bears, with the errors of the
-    /// encoder's positions in counts.
+    /// encoder's positions.
     #[track_caller]
-    const fn check_acceleration(&self, device: &Device, speed: f64, counts: f64) {
+    const fn check_acceleration(&self, device: &Device, speed: f64, off: PositionError) {
         let torque = OVER_CURRENT * self.full_scale_current() * self.torque_per_amp()
             + device.damping * speed;
-        let largest = self.largest_acceleration_with(counts);
+        let largest = self.largest_acceleration_with(off);
         let acceleration = torque / device.inertia;
         if acceleration <= largest {
             return;

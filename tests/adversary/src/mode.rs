@@ -126,6 +126,7 @@ fn latched(rng: &mut impl Rng, period: f64) -> Latency {
     let mut latency = Latency::NONE;
     if rng.random_bool(0.25) {
         latency = Latency::sampled(rng.random_range(1..=4), lag, period);
+        latency.sensor_lag = filter_beside_updates(rng, period);
         if rng.random_bool(0.5) {
             latency = jittering(rng, latency, period, 0.2 * period);
         }
@@ -138,6 +139,14 @@ fn latched(rng: &mut impl Rng, period: f64) -> Latency {
         latency.sensor_lag = TimeRange::exactly(period * log_uniform(rng, 0.02, 0.8));
     }
     read_late(jittering(rng, latency, period, 0.4 * period))
+}
+
+fn filter_beside_updates(rng: &mut impl Rng, period: f64) -> TimeRange {
+    if rng.random_bool(0.6) {
+        return TimeRange::ZERO;
+    }
+    let lag = period * log_uniform(rng, 0.02, 1.0);
+    about(rng, lag)
 }
 
 /// A delay alone, or none, often so that torques cross counts, with jitter.
@@ -162,6 +171,7 @@ fn any(rng: &mut impl Rng, period: f64) -> Latency {
         let mut latency = Latency::sampled(updates, lag, period);
         let delay = f64::from(rng.random_range(0..=2 * updates)) * period / f64::from(updates);
         latency.output_delay = TimeRange::exactly(delay);
+        latency.sensor_lag = filter_beside_updates(rng, period);
         if rng.random_bool(0.4) {
             latency = jittering(rng, latency, period, 0.5 * delay);
         }

@@ -234,6 +234,70 @@ fn a_reading_with_an_age_is_that_much_later() {
     assert!(older <= varying && varying <= oldest, "{older} {varying} {oldest}");
 }
 
+/// The rest of a step of the torque lies between those of the continuous lag and of the same that begins later.
+#[test]
+fn straight_lines_are_later_than_the_lag_by_so_much() {
+    let mut rng = ChaCha8Rng::seed_from_u64(3);
+    let mut closest = f64::INFINITY;
+    for _ in 0..200 {
+        let updates = rng.random_range(1..=40_u16);
+        let lag = log_uniform(&mut rng, 0.01, 20.0);
+        let later = Latency::sampled(updates, lag, 1.0).later_than_lag(1.0);
+        let between = 1.0 / f64::from(updates);
+        let left = (-between / lag).exp();
+        for step in 1..200 {
+            let part = f64::from(step) / 200.0;
+            let rest = 1.0 - (1.0 - left) * part;
+            // The time at which the lag has that rest.
+            let behind = part * between + lag * rest.ln();
+            assert!((-1e-15..=later.hi()).contains(&behind), "{updates} {lag} {part}: {behind}");
+            closest = f64::min(closest, later.hi() / behind.max(1e-300));
+        }
+    }
+    assert!(closest < 1.001, "{closest}");
+}
+
+/// Beside a sensor filter the certificate has the continuous lag in a window. For a spring that is the exact limit of
+/// the same lag at the end of the window, and for a damped one less than that, by about the width of the window.
+#[test]
+fn a_filter_of_the_encoder_beside_updates() {
+    for (updates, lag, filter) in
+        [(1, 1e-4, 3e-5), (2, 6e-5, 1e-4), (4, 3e-5, 5.3e-5), (4, 8e-5, 6.4e-5), (20, 5e-5, 6.4e-5)]
+    {
+        let sensor_lag = TimeRange::exactly(filter);
+        let latency = Latency { sensor_lag, ..Latency::sampled(updates, lag, PERIOD) };
+        let between = PERIOD / f64::from(updates);
+        let later = (between * between / (8.0 * lag)).min(between);
+        let delayed = Latency::delayed(between + later).with_actuator_lag(lag);
+        let continuous = Latency { sensor_lag, ..delayed };
+        for environment in [
+            |stiffness| Wall::spring(stiffness, 1).alone(),
+            |stiffness| Wall::spring(stiffness, 1).behind(0.0).alone(),
+        ] {
+            let found =
+                largest(|it| Scene { environment: environment(it), ..spring(it, 1, latency) });
+            assert!((found / limit(continuous) - 1.0).abs() < 1e-3, "{updates} {lag}: {found}");
+        }
+        let damped = |latency| {
+            largest(|it| Scene {
+                environment: Wall::damped(it, 1e-4, 1).alone(),
+                ..spring(it, 1, latency)
+            })
+        };
+        let (found, best) = (damped(latency), damped(continuous));
+        let width = 1.0 + later / PERIOD;
+        println!("{updates} {lag} {filter}: {found} of {best}");
+        assert!(found <= best && found > 0.97 * best / width, "{updates}: {found} of {best}");
+        let matched = Scene {
+            coupling: Coupling::Matched,
+            torque_limit: Some(1.0),
+            environment: Wall::spring(1e3, 0).behind(0.0).alone(),
+            ..spring(1.0, 0, latency)
+        };
+        assert!(certify(&matched).is_ok(), "{updates}: {:?}", certify(&matched).err());
+    }
+}
+
 /// A loop of 2 kHz, four times as fast as a servo at 10 kHz: what its straight lines cost a spring.
 #[test]
 fn a_loop_of_two_kilohertz_is_nearly_its_continuous_lag() {
@@ -276,9 +340,9 @@ fn what_a_current_loop_in_updates_does_not_allow_is_refused_with_value_and_bound
         let words = ["0 s", "greater than 0"];
         refused(Latency { actuator_lag: lag, ..fine }, Parameter::ActuatorLag, &words);
     }
-    let time = TimeRange::exactly(1e-5);
-    let beside = ["0.00001 s", "0 where the amplifier is updated"];
-    refused(Latency { sensor_lag: time, ..fine }, Parameter::SensorLag, &beside);
+    let beside = ["0.00001 s", "0 beside a lag of amplifier"];
+    let response = between(0.0, 1e-5);
+    refused(Latency { actuator_response: response, ..fine }, Parameter::ActuatorResponse, &beside);
     let scene = Scene {
         timing: Timing { period: PERIOD, worst_period: Some(2e-4) },
         ..spring(20.0, 1, fine)

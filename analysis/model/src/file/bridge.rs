@@ -79,7 +79,7 @@ impl SceneFile {
             current_loop = indexed.map_err(|error| error.to_string())?;
         }
         current_loop
-            .check_age(latency.encoder, period, transducers.largest_speed)
+            .check_age(latency, period, transducers.largest_speed)
             .map_err(|error| error.to_string())?;
         let response = current_loop.response();
         let phase = latency.stated_delay() - response.delay;

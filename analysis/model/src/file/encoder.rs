@@ -151,12 +151,8 @@ impl EncoderTable {
             let reason = format!("is more than `{}` = {period} s", key::PERIOD.path);
             return Err(top.conflict(&key::WINDOW, reason));
         }
-        for (key, is_stated) in
-            [(&key::WINDOW, window > 0.0), (&key::READING_LAG, !self.lag.is_zero())]
-        {
-            if is_stated && latency.actuator_updates > 0 {
-                return beside(key, &key::ACTUATOR_UPDATES);
-            }
+        if window > 0.0 && latency.actuator_updates > 0 {
+            return beside(&key::WINDOW, &key::ACTUATOR_UPDATES);
         }
         if latency.output_delay.most + age.most > LONGEST_DELAY * period {
             let reason = format!(

@@ -20,9 +20,6 @@ pub fn check(top: &Section<'_>, latency: &Latency, timing: &Timing) -> Read<()> 
         let lag = key::ACTUATOR_LAG.path;
         return no(own, format!("needs a `{lag}` that is greater than 0"));
     }
-    if !latency.sensor_lag.is_zero() {
-        return no(own, format!("stands beside `{}`", key::SENSOR_LAG.path));
-    }
     if let Some(worst) = timing.longer_period() {
         let reason = format!("is {worst} s, which may not be missed beside `{}`", own.path);
         return no(&key::WORST_PERIOD, reason);

@@ -343,6 +343,8 @@ impl PortCurve {
             delay = scene.latency.delay_in_updates(scene.timing.period)?;
         }
         let (lags, between) = ([actuator, sensor], scene.latency.is_between_updates());
+        // Beside a sensor filter the curve is that of a continuous lag.
+        let updates = if scene.latency.is_filtered_beside_updates() { 0 } else { updates };
         let response = LagIntervals { delay, lags, updates, between }.response(0)?;
         Some(Self {
             controller: Response::new(controller),

@@ -197,7 +197,7 @@ fn a_failed_transfer_is_held_and_two_are_a_fault() {
     );
 }
 
-fn check_failures(knob: &Knob, failures: [(Failure, ReadingError); 4]) {
+fn check_failures<const N: usize>(knob: &Knob, failures: [(Failure, ReadingError); N]) {
     let mut held = boot(knob, MAGNETS);
     check_torque_of(&mut held, &knob.transducers, "by the stated phase");
     held.push(0.0);
@@ -238,6 +238,7 @@ fn knob_with(chip: &str, age: &str, noise: u32) -> Knob {
     let IndexOffset { counts, is_reversed } = offset();
     let counts = match chip {
         "mt6835" => counts << 7,
+        "ma702" => counts << 2,
         _ => counts,
     };
     let text = KNOB
@@ -276,6 +277,14 @@ fn an_as5048a_is_read_beside_the_bridge() {
 #[test]
 fn an_as5047p_is_read_beside_the_bridge() {
     check_as504x(&knob_with("as5047p", "[1.15e-4, 1.64e-4]", 3));
+}
+
+/// The model of the chip reads without its filter, which the certificate has.
+#[test]
+fn an_ma_chip_is_read_beside_the_bridge() {
+    let knob = knob_with("ma702", "[4.5e-6, 4.2e-5]\nlag = 5.3e-5", 3);
+    check_codes(&knob);
+    check_failures(&knob, [(Failure::Zeros, ReadingError::Zeros)]);
 }
 
 fn check_as504x(knob: &Knob) {
