@@ -23,11 +23,13 @@
 //!
 //! A count shows the position to half a count. With `r` between -1/2 and 1/2 where the position is within its
 //! count, the square is one of `y + S (r' - r)`, which is at least `y^2 + 2 S y (r' - r)`. Summed by parts, the
-//! errors of all ticks are at most the sum of `S |y - y_before|`, and `S |y|` at the end: the tank debits the
-//! first, and the reserve has the second. For that, `y` may be nearer to zero than it is, since for `c` between
-//! zero and `y` the square is at least `c^2 + 2 c (y - c) + 2 S c (r' - r)`. So it is clamped to 2^26 steps, and
-//! the reserve is `S` times that. A product that wraps only does so above 2^31 - 2^25 steps, whose square is
-//! above that of any clamped number with any error of a count.
+//! errors of all ticks are at most the sum of `S |y - y_before|`, and `S |y|` at the end. As `|x|` is twice the
+//! positive part of `x` less `x`, and the sum of all `y - y_before` is the last `y`, both are at most the sum of
+//! `2 S` times the positive parts of `y - y_before`, which the tank debits, and `2 S |y|` at the end, which the
+//! reserve has. For that, `y` may be nearer to zero than it is, since for `c` between zero and `y` the square is
+//! at least `c^2 + 2 c (y - c) + 2 S c (r' - r)`. So it is clamped to 2^25 steps, and the reserve is `2 S` times
+//! that. A product that wraps only does so above 2^31 - 2^25 steps, whose square is above that of any clamped
+//! number with any error of a count.
 //!
 //! An amplifier with a lag makes torques that are no whole numbers. A coefficient is off by at most 2^-25, a
 //! torque is below 2^25 steps, and results are rounded: so the modelled torque is off by 3 steps in each tick,
@@ -44,7 +46,7 @@ use crate::environment::DelayLine;
 /// Binary digits of a code of the DAC in steps of a torque.
 pub(super) const STEP_BITS: u32 = 14;
 /// The most steps whose square a tick gives back.
-const LARGEST: i32 = 1 << 26;
+const LARGEST: i32 = 1 << 25;
 /// The most codes of a torque.
 const MOST_CODES: f64 = 2047.0;
 /// Steps for a count, at least and at most.
@@ -155,7 +157,7 @@ impl TankNumbers {
 
     /// Energy in J of the reserve for counts.
     pub(super) const fn of_counts(sampling: &Sampling) -> f64 {
-        0.5 * sampling.count * sampling.code * (LARGEST >> STEP_BITS) as f64
+        sampling.count * sampling.code * (LARGEST >> STEP_BITS) as f64
     }
 
     /// Of a budget and the response of the motor.
@@ -287,7 +289,9 @@ impl<D: DelayLine<i64>, const LAGS: usize> Tank<D, LAGS> {
     #[inline(always)]
     fn booked(&mut self, moved: i32) -> i64 {
         let y = self.mean.wrapping_sub(moved.wrapping_mul(self.speed)).clamp(-LARGEST, LARGEST - 1);
-        let lost = product(magnitude(y.wrapping_sub(self.before)), self.speed);
+        // Both are known to be positive.
+        let rise = u64::from(twice_positive(y.wrapping_sub(self.before)));
+        let lost = rise.wrapping_mul(u64::from(self.speed.cast_unsigned())).cast_signed();
         let earned = product(y, y).wrapping_add(self.power);
         let missing = self.missing.wrapping_sub(earned).wrapping_add(lost);
         let to_come = self.to_come();
@@ -407,10 +411,12 @@ impl<D: DelayLine<i64>, const LAGS: usize> Tank<D, LAGS> {
             if change != 0 {
                 let price = (product(change, self.numbers.step_price) >> 32) as i32;
                 missing = missing.wrapping_add(product(change, price));
+                self.mean = begins;
             }
+        } else {
+            self.mean = begins;
         }
         self.missing = missing;
-        self.mean = begins;
         self.means.push(mean.into());
     }
 
@@ -423,7 +429,7 @@ impl<D: DelayLine<i64>, const LAGS: usize> Tank<D, LAGS> {
     /// way was paid at the price of the other's share.
     pub(super) fn take_over(&mut self, last: &Self) {
         // The last step of the position is known to the width of a count.
-        let unknown = product(magnitude(last.before), last.speed);
+        let unknown = product(2 * magnitude(last.before), last.speed);
         let energy = last.level() + last.numbers.owed - unknown;
         let scaled = energy as f64 * (last.numbers.joules / self.numbers.joules);
         // Above the rounding of these and of the reserves.
@@ -438,7 +444,7 @@ impl<D: DelayLine<i64>, const LAGS: usize> Tank<D, LAGS> {
         if may_rise {
             (self.speed, self.power) = (self.numbers.speed, self.numbers.power);
         } else {
-            let lost = product(magnitude(self.before), self.speed);
+            let lost = product(2 * magnitude(self.before), self.speed);
             self.missing = self.missing.wrapping_add(lost);
             (self.speed, self.power, self.before) = (0, 0, 0);
         }
@@ -566,6 +572,12 @@ const fn product(a: i32, b: i32) -> i64 {
 #[inline(always)]
 const fn clamped(value: i64) -> i64 {
     value & !(value >> 63)
+}
+
+/// Twice a number between -[`LARGEST`] and twice that, or zero if it is negative.
+#[inline(always)]
+fn twice_positive(value: i32) -> u32 {
+    (value << 1).clamp(0, 4 * LARGEST - 1).cast_unsigned()
 }
 
 /// The number without its sign.
