@@ -1,6 +1,7 @@
 //! The host beside a servo: its tank in the tick, and its commands and reports below the tick.
 
 use core::fmt;
+use core::sync::atomic::{Ordering, compiler_fence};
 
 use super::channel::{HostChannel, HostWords};
 use super::stream::Stream;
@@ -481,7 +482,11 @@ impl<const TICKS: usize, const LAGS: usize> BesideServo for Hosted<TICKS, LAGS> 
 
     #[inline(always)]
     fn refused(&mut self, moved: i32) -> i32 {
-        self.tank.refused(moved, self.stream.wanted())
+        let missing = self.tank.booked(moved);
+        // Without it the compiler reads the stream before, and keeps more values at a time than there are registers:
+        // a tick has six instructions more.
+        compiler_fence(Ordering::SeqCst);
+        self.tank.refused(missing, self.stream.wanted())
     }
 
     fn wait(&mut self, may_give: bool) {

@@ -287,7 +287,7 @@ impl<D: DelayLine<i64>, const LAGS: usize> Tank<D, LAGS> {
 
     /// The same without its level, which is returned.
     #[inline(always)]
-    fn booked(&mut self, moved: i32) -> i64 {
+    pub(super) fn booked(&mut self, moved: i32) -> i64 {
         let y = self.mean.wrapping_sub(moved.wrapping_mul(self.speed)).clamp(-LARGEST, LARGEST - 1);
         // Both are known to be positive.
         let rise = u64::from(twice_positive(y.wrapping_sub(self.before)));
@@ -299,11 +299,10 @@ impl<D: DelayLine<i64>, const LAGS: usize> Tank<D, LAGS> {
         clamped(missing.wrapping_sub(to_come)).wrapping_add(to_come)
     }
 
-    /// [Books](Self::book) a tick, and [gives](Self::give) what the level pays of a wanted torque in codes, with a
+    /// [Gives](Self::give) what the level of a [booked](Self::booked) tick pays of a wanted torque in codes, with a
     /// single store of the level. Returns the rest.
     #[inline(always)]
-    pub(super) fn refused(&mut self, moved: i32, wanted: i32) -> i32 {
-        let missing = self.booked(moved);
+    pub(super) fn refused(&mut self, missing: i64, wanted: i32) -> i32 {
         let cost = self.cost(wanted);
         let paid = missing.wrapping_add(cost);
         if !self.is_in_reach(paid) {
