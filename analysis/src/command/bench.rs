@@ -88,7 +88,7 @@ const WALL: &str = "name = \"wall\"\ndevice = { inertia = 2.2e-5, damping = 0.02
     environment = { type = \"damper-wall\", stiffness = 10.0, damping = 0.002, delay = 1 }\n\
     limits = { torque = 1.0, full_scale = 2.0, counts_per_turn = 61440 }\n";
 const HOST: &str =
-    "host = { energy = 0.05, power = 0.5, damping = 0.004, torque = 0.5, timeout = 0.05 }\n";
+    "host = { energy = 0.05, power = 0.5, damping = 0.004, torque = 0.5, timeout = 20.0 }\n";
 /// Of what a magnetic encoder adds to the servo's interrupt.
 const READING: Budget = Budget::of(15.0, "instructions");
 /// Of the free bytes of a motor board's flash with a wall on its bridge.
@@ -129,24 +129,25 @@ fn everything(arguments: &Arguments) -> Result<Vec<Figure>, CommandError> {
     Ok(figures)
 }
 
-/// The same wall with a host and without.
+/// What a host adds to a tick of the same wall at rest.
 fn beside_host(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<(), CommandError> {
-    let mean = |text: &str| {
+    let measured = |text: &str| {
         let file = file::parse("wall.toml", Format::Toml, text)?;
-        Ok::<_, CommandError>(
-            measured(&file, "wall.toml", |program, input, servo| {
-                let elf = program.build(toolchain, None, NumberFormat::F32)?.path;
-                let backend = Some(Backend::Emulator(&elf));
-                Ok(run_with_backend(input, servo, backend, DEFAULT_TICKS, || {})?)
-            })?
-            .mean,
-        )
+        let program = FileProgram::of(&file, "wall.toml", None, None)?;
+        let elf = program.build(toolchain, None, NumberFormat::F32)?.path;
+        let torque = file.host.map(|host| host.torque as f32);
+        Ok::<_, CommandError>(on_target::at_rest(&elf, torque)?)
     };
-    let pair = Pair { ours: mean(&format!("{WALL}{HOST}"))?, peers: mean(WALL)? };
-    let added = pair.ours - pair.peers;
-    let name = "wall with a host, f32: whole interrupt, mean";
-    figures.push(Figure::beside(name, pair, "instructions", "without a host"));
-    figures.push(Figure::within("host, f32: added to a tick, mean", added, &BESIDE_HOST));
+    let (with, without) = (measured(&format!("{WALL}{HOST}"))?, measured(WALL)?);
+    let (peers, whole) = (without.interrupt_instructions, with.interrupt_instructions);
+    let changing = with.changed_instructions.unwrap_or(whole);
+    let added = |with: u64, without: u64| with as f64 - without as f64;
+    let name = |what| format!("host, f32: added to a tick, {what}");
+    figures.extend([
+        Figure::within(name("held torque"), added(whole.min, peers.min), &BESIDE_HOST),
+        Figure::within(name("changing torque, most"), added(changing.max, peers.min), &BESIDE_HOST),
+        Figure::alone(name("its command taken"), added(whole.max, peers.max), BESIDE_HOST.unit),
+    ]);
     Ok(())
 }
 

@@ -22,6 +22,8 @@ pub struct EmulatorReport {
     pub free_instructions: Option<InstructionStats>,
     /// Instructions of the servo's whole interrupt.
     pub interrupt_instructions: InstructionStats,
+    /// The same over the ticks with another code than the last; `None` without such ticks.
+    pub changed_instructions: Option<InstructionStats>,
     /// Instructions of one call of the work below the interrupt; a set of parameters is certified in one
     /// call.
     pub below_instructions: InstructionStats,
@@ -99,6 +101,7 @@ impl EmulatorReport {
             contact_instructions: contact,
             free_instructions: free,
             interrupt_instructions: one("interrupt"),
+            changed_instructions: spread("changed"),
             below_instructions: one("below"),
             energy_instructions: one("energy"),
             frame_instructions: one("frame"),

@@ -1,19 +1,23 @@
 //! The cost of a program's parts on the emulated board, in instructions.
 
+use std::io::Write;
 use std::path::Path;
 
 use firmware_harness::bench_request::BenchRequest;
 use firmware_harness::currents::{CurrentBench, Input};
 use firmware_harness::tables::MAGNET;
+use haptic_model::board::client::frame;
 use haptic_servo::certificate::Parameter;
 use haptic_servo::dac::DacCode;
 use haptic_servo::environment::{Ends, Profile, Wall};
 use haptic_servo::number::Arithmetic;
 use haptic_servo::scene::{Coupling, Latency, Scene};
+use haptic_servo::wire::host::{HostCommand, HostRequest};
+use haptic_servo::wire::message::ToBoard;
 
 use super::CORE_CLOCK;
 use crate::emulator::plant_thread::{FixedCount, PlantThread};
-use crate::emulator::{Client, Emulator, EmulatorError};
+use crate::emulator::{Client, Emulator, EmulatorError, EmulatorReport};
 use crate::latency_limits::lag_of;
 use crate::link::{Address, Link, RequestResult};
 use crate::program::{damper_wall, knob};
@@ -27,6 +31,8 @@ const INSTANT_RATE: f64 = 40e3;
 const SERVO_RATE: f64 = 10e3;
 /// Ticks of a hand that goes in and out of a wall with varying speed.
 const TICKS: u32 = 2048;
+/// Ticks in which a host's torque rises, more than [`TICKS`].
+const RAMP: u16 = 4096;
 
 /// Largest number of instructions of an instant of a bridge's current loop, from a sample to compare values,
 /// of a brushed and of a brushless motor.
@@ -107,6 +113,24 @@ pub fn verdict_instructions(elf: &Path) -> Result<[u64; 2], EmulatorError> {
     }
     board.finish()?;
     Ok(most)
+}
+
+/// Instructions of the whole interrupt at rest, as the emulated board measures them: of a program without a host,
+/// or of one whose host's torque rises over thousands of ticks, a code every few.
+pub fn at_rest(elf: &Path, torque: Option<f32>) -> Result<EmulatorReport, EmulatorError> {
+    let mut board = Emulator::boot(elf)?;
+    let mut port = board.arm_and_wait()?;
+    let at_first = board.exchange(0)?;
+    if let Some(torque) = torque {
+        let command = HostCommand { number: 0, torque, ramp: RAMP };
+        let bytes = frame(&ToBoard::Host(HostRequest::Torque(command)));
+        port.write_all(&bytes).map_err(EmulatorError::Serial)?;
+        while board.exchange(0)? == at_first {}
+    }
+    for _ in 0..TICKS {
+        board.exchange(0)?;
+    }
+    board.finish()
 }
 
 /// The cost of certifying a set of parameters from a host on a running board.

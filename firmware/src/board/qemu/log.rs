@@ -137,6 +137,9 @@ pub struct Log<P> {
     parts: P,
     total: u32,
     interrupt: InstructionStats,
+    /// The same of the ticks with another code than the last.
+    changed: InstructionStats,
+    code: u16,
     lockstep: InstructionStats,
     /// Statistics of the work below the interrupt.
     below: InstructionStats,
@@ -152,8 +155,8 @@ impl<P: Parts> Log<P> {
         let (push, ticks) = QUEUE.init(Queue::new()).split();
         // SAFETY: the caller guarantees that the cell is unused.
         unsafe { TICKS.init(push) };
-        let [interrupt, lockstep, below] = [InstructionStats::EMPTY; 3];
-        Self { ticks, scale, parts, total: 0, interrupt, lockstep, below }
+        let [interrupt, changed, lockstep, below] = [InstructionStats::EMPTY; 4];
+        Self { ticks, scale, parts, total: 0, interrupt, changed, code: 0, lockstep, below }
     }
 
     /// Runs work below the interrupt, and measures it.
@@ -181,9 +184,14 @@ impl<P: Parts> Log<P> {
     fn add(&mut self, tick: &Measured) {
         self.parts.take(tick, &self.scale);
         if tick.was_running {
-            self.interrupt.add(self.scale.of_interrupt(tick.tick));
+            let instructions = self.scale.of_interrupt(tick.tick);
+            self.interrupt.add(instructions);
+            if tick.code != self.code {
+                self.changed.add(instructions);
+            }
             self.lockstep.add(self.scale.instructions(tick.lockstep));
         }
+        self.code = tick.code;
         self.total += 1;
         if self.total.is_multiple_of(EVERY) {
             println!("progress={}", self.total);
@@ -197,6 +205,7 @@ impl<P: Parts> Log<P> {
         println!("ticks={ticks} dropped={dropped} overruns={overruns}");
         self.parts.log();
         self.interrupt.log("interrupt");
+        self.changed.log("changed");
         self.below.log("below");
         self.lockstep.log("lockstep");
     }

@@ -166,7 +166,8 @@ fn a_servo_that_does_not_run_gives_no_torque_and_keeps_the_level() {
 }
 
 /// J left of the tank after the device stopped, and 0.4 N m were held in place and faded out in 81 ticks: lost are
-/// the steps alone, of the torque and of what a count may hide at each step of speed and torque.
+/// the steps alone, of the torque and of what a count may hide where the torque rises; as the device stops, what it
+/// may hide falls.
 fn left_by_hand() -> f64 {
     let (period, torque, ticks) = (1e-3_f64, (0.4 / STEP).round() * STEP, 81.0);
     // A count that is read up to 1 us late takes these parts of the share for the lost steps of the
@@ -177,8 +178,7 @@ fn left_by_hand() -> f64 {
     let main = HOST.damping / ((1.0 + eta) / (1.0 - eta) + of_steps);
     let held = torque * torque * period / (4.0 * main);
     let count = core::f64::consts::TAU / test_scene::PADDLE.counts_per_turn;
-    let stopped = 2.0 * main * (f64::from(APPROACH) * count / period);
-    let hidden = count * torque + 0.5 * count * stopped;
+    let hidden = count * torque;
     HOST.energy - (1.0 + 1.0 / ticks) * held * late / of_steps - hidden
 }
 
