@@ -53,8 +53,8 @@ pub struct MagneticEncoder {
     /// The level that it gives its line, or has given it, and when it was selected or released.
     level: bool,
     changed: u64,
-    /// When the line has risen last.
-    rose: Option<u64>,
+    /// When the line has fallen last.
+    pub fell: Option<u64>,
     /// The bits to come, from the highest on, and how many of them.
     out: (u64, u32),
     /// Bits received in this transfer.
@@ -92,7 +92,7 @@ impl MagneticEncoder {
             selected: false,
             level: true,
             changed: 0,
-            rose: None,
+            fell: None,
             out: (0, 0),
             input: (0, 0),
             answer: 0,
@@ -146,7 +146,7 @@ impl MagneticEncoder {
 
     /// It is selected, by a master with this mode.
     pub fn select(&mut self, now: u64, mode: u32) {
-        (self.rose, self.level, self.changed) = (self.rose(now), self.line(now), now);
+        (self.level, self.changed) = (self.line(now), now);
         (self.selected, self.input) = (self.has_mode(mode), (0, 0));
         let fails = |failure| self.failure == Some(failure);
         let (weak, flag) = (fails(Failure::WeakField), fails(Failure::Flag));
@@ -183,8 +183,8 @@ impl MagneticEncoder {
         self.level = level;
         let is = self.has_line(level);
         // When in the transfer does not matter.
-        if is && !was {
-            self.rose = Some(self.changed);
+        if was && !is {
+            self.fell = Some(self.changed);
         }
         is
     }
@@ -215,12 +215,6 @@ impl MagneticEncoder {
     pub fn line(&self, now: u64) -> bool {
         let is_pulled_up = !self.selected && now >= self.changed + RISE;
         self.has_line(self.level || is_pulled_up)
-    }
-
-    /// When the line has risen last, if it has.
-    pub fn rose(&self, now: u64) -> Option<u64> {
-        let by_pull_up = !self.selected && !self.level && self.line(now);
-        if by_pull_up { Some(self.changed + RISE) } else { self.rose }
     }
 
     /// It is released: an AS504x executes the command.

@@ -30,8 +30,8 @@ impl Readings {
     }
 
     /// Takes a transfer, of which so many in a row may fail, as the scene's certificate says; whether it has an angle.
-    /// A failed one is replaced by the angle before. `has_been_high` is asked after a word of zeros: whether the data
-    /// line has been high since it was last asked.
+    /// A failed one is replaced by the angle before. `has_fallen` is asked after a word of zeros beside zero: whether
+    /// the data line has fallen since it was last asked.
     ///
     /// # Errors
     /// If more transfers in a row have failed than are allowed, or if the chip has stopped.
@@ -41,16 +41,25 @@ impl Readings {
         chip: &Chip,
         frame: &Frame,
         allowed: u16,
-        has_been_high: impl FnOnce() -> bool,
+        has_fallen: impl FnOnce() -> bool,
     ) -> Result<bool, ReadingError> {
+        // Beside zero, or as the first reading, a word of zeros is an angle, as a handle may rest there. No checksum
+        // tells it from a wire at ground, but the line does: it is pulled up, high while the chip is not selected, and
+        // falls for such a word. A line that nothing drives is as high as a word of ones. So these are an angle only
+        // beside zero, and until the chip counts as frozen.
         let count = match (chip.decode)(frame) {
             Ok(count) => count,
+            Err(ReadingError::Zeros) if self.is_near_zero(chip) && has_fallen() => {
+                cold_path();
+                0
+            }
             Err(error) => {
                 cold_path();
-                match self.near_zero(chip, error, has_been_high) {
-                    Some(count) => count,
-                    None => return self.fail(error, allowed),
+                let has_angle = chip.ones_are_angle && self.count & NONE == 0;
+                if error != ReadingError::Ones || !has_angle || !self.is_near_zero(chip) {
+                    return self.fail(error, allowed);
                 }
+                chip.width.mask()
             }
         };
         if let Some(most) = chip.frozen_after {
@@ -80,26 +89,13 @@ impl Readings {
         if self.failed > allowed { Err(error) } else { Ok(false) }
     }
 
-    /// Beside zero, or as the first reading, a word of zeros is an angle, as a handle may rest there. No checksum tells
-    /// it from a wire at ground, but the line does: it is pulled up, and is high while the chip is not selected.
-    ///
-    /// A line that nothing drives is as high as a word of ones. So these are an angle only beside zero, and until the
-    /// chip counts as frozen.
+    /// Whether the last angle is beside zero, or if there was none yet.
     #[inline(always)]
-    fn near_zero(
-        &self,
-        chip: &Chip,
-        error: ReadingError,
-        has_been_high: impl FnOnce() -> bool,
-    ) -> Option<u32> {
-        let (turn, near) = (chip.width.mask(), chip.width.mask() / NEAR);
-        let is_first = self.count & NONE != 0;
-        let is_near = !is_first && self.count.wrapping_add(near) & turn <= 2 * near;
-        match error {
-            ReadingError::Zeros if (is_first || is_near) && has_been_high() => Some(0),
-            ReadingError::Ones if is_near && chip.ones_are_angle => Some(turn),
-            _ => None,
-        }
+    const fn is_near_zero(&self, chip: &Chip) -> bool {
+        let turn = chip.width.mask();
+        // One bit test: of both sides, as many counts as a power of two.
+        let near = turn / NEAR;
+        self.count.wrapping_add(near) & (turn & !(2 * near + 1)) == 0
     }
 
     /// The last angle in counts, in a turn of the chip; there zero if there was none yet.

@@ -117,10 +117,10 @@ fn a_transfer_before_an_update_adds_to_the_age() {
 /// A handle may rest where all bits are equal, and a line at ground is told there and elsewhere.
 #[test]
 fn a_word_of_equal_bits_is_an_angle_beside_zero() {
-    let takes = |chip: &Chip, first: &[u16], word: u16, has_been_high| {
+    let takes = |chip: &Chip, first: &[u16], word: u16, has_fallen| {
         let mut readings = Readings::none();
         let _ = readings.take(chip, &frame(first), 0, || false);
-        let taken = readings.take(chip, &frame(&[word]), 0, || has_been_high);
+        let taken = readings.take(chip, &frame(&[word]), 0, || has_fallen);
         taken.map(|_| readings.count())
     };
     const ZEROS: Result<u32, ReadingError> = Err(ReadingError::Zeros);

@@ -171,7 +171,7 @@ impl VirtualBoard {
             Unit::Spi => self.spi.read(offset, now),
             Unit::Dma => self.dma.read(offset),
             Unit::DmaMultiplexer => self.dma.read_multiplexer(offset),
-            Unit::Edges => self.edges.read(offset, self.risen()),
+            Unit::Edges => self.edges.read(offset, self.fallen()),
             Unit::Watchdog => self.watchdog.read(offset),
             Unit::Stage(unit) => {
                 self.advance_power_stage();
@@ -184,13 +184,13 @@ impl VirtualBoard {
         }
     }
 
-    /// The pin of a magnetic encoder's data line, if it is connected to the detector of edges, and when it has risen.
-    fn risen(&self) -> Option<(u32, u64)> {
+    /// The pin of a magnetic encoder's data line, if it is connected to the detector of edges, and when it has fallen.
+    fn fallen(&self) -> Option<(u32, u64)> {
         let ([_, _, (port, pin), _], _) = self.chip.bus?.pins;
         let ports = self.configuration.get(LINE_PORTS + pin / 4 * 4);
         let is_of_port = ports >> (4 * (pin % 4)) & 0xF == port as u32;
-        let rose = self.magnetic.as_ref()?.rose(self.now)?;
-        is_of_port.then_some((pin, rose))
+        let fell = self.magnetic.as_ref()?.fell?;
+        is_of_port.then_some((pin, fell))
     }
 
     /// IDR: the pins that this chip drives high, and a magnetic encoder's data line. Other pins that others drive are

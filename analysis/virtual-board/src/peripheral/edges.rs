@@ -1,18 +1,18 @@
-//! The detector of edges (RM0440, EXTI), of which programs use the lines of pins, by the rising edge.
+//! The detector of edges (RM0440, EXTI), of which programs use the lines of pins, by the falling edge.
 
 use super::registers::{Registers, Table};
 use super::{Access, only};
 
-/// IMR1, RTSR1 and PR1.
+/// IMR1, FTSR1 and PR1.
 const MASK: u32 = 0x00;
-const RISING: u32 = 0x08;
+const FALLING: u32 = 0x0C;
 const PENDING: u32 = 0x14;
 
 /// The lines of pins.
 const PINS: u32 = 0xFFFF;
 
 /// The lines that are not of pins are direct ones, and enabled out of reset.
-const REGISTERS: Table = &[(MASK, 0xFF82_0000, PINS), (RISING, 0, PINS)];
+const REGISTERS: Table = &[(MASK, 0xFF82_0000, PINS), (FALLING, 0, PINS)];
 
 /// The unit.
 #[derive(Clone, Debug)]
@@ -30,15 +30,15 @@ impl Default for Edges {
 }
 
 impl Edges {
-    /// Reads, with the pin that has risen last, if one is connected, and when.
-    pub fn read(&self, offset: u32, risen: Option<(u32, u64)>) -> Access<u32> {
+    /// Reads, with the pin that has fallen last, if one is connected, and when.
+    pub fn read(&self, offset: u32, fallen: Option<(u32, u64)>) -> Access<u32> {
         if offset != PENDING {
             return self.registers.read(offset);
         }
         let is_pending = |(pin, at): &(u32, u64)| {
-            self.registers.has(RISING, 1 << pin) && *at > self.cleared[*pin as usize]
+            self.registers.has(FALLING, 1 << pin) && *at > self.cleared[*pin as usize]
         };
-        Ok(risen.filter(is_pending).map_or(0, |(pin, _)| 1 << pin))
+        Ok(fallen.filter(is_pending).map_or(0, |(pin, _)| 1 << pin))
     }
 
     /// Writes.

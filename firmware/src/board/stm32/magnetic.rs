@@ -19,7 +19,7 @@
 //! (tables of the multiplexer's inputs list it).
 
 use core::hint::cold_path;
-use core::sync::atomic::{AtomicBool, AtomicU16, Ordering};
+use core::sync::atomic::{AtomicU16, Ordering};
 
 use cortex_m::peripheral::NVIC;
 use embassy_stm32::interrupt;
@@ -112,8 +112,6 @@ struct Memory {
     /// CR1 of the SPI that begins a transfer, and those that end it.
     begins: AtomicU16,
     ends: [AtomicU16; ENDING],
-    /// Whether the chip's data line was high when [`has_been_high`] looked at it.
-    was_high: AtomicBool,
     reader: IsrCell<Reader>,
 }
 
@@ -121,7 +119,6 @@ static MEMORY: Memory = Memory {
     frame: [const { AtomicU16::new(0) }; LONGEST],
     begins: AtomicU16::new(0),
     ends: [const { AtomicU16::new(0) }; ENDING],
-    was_high: AtomicBool::new(false),
     reader: IsrCell::empty(),
 };
 
@@ -165,20 +162,17 @@ fn take_fault() -> Option<Fault> {
     taken
 }
 
-/// Whether the chip's data line has been high since the last call, or is. It is pulled up, and nothing drives it while
-/// the chip is not selected. That it has risen stays in the detector of edges, whose interrupt the core does not enable
-/// (RM0440, EXTI).
-#[cold]
-#[inline(never)]
-fn has_been_high() -> bool {
-    let BusPin { port, pin, .. } = BUS.input;
-    let rose = pac::EXTI.pr(0).read().line(pin);
-    pac::EXTI.pr(0).write(|w| w.set_line(pin, true));
-    // If it is, it has risen before the write, which took the edge away for the next call, too.
-    let is_high = port.idr().read().idr(pin) == Idr::HIGH;
-    let was_high = MEMORY.was_high.load(Ordering::Relaxed);
-    MEMORY.was_high.store(is_high, Ordering::Relaxed);
-    rose || is_high || was_high
+/// Whether the chip's data line has fallen since the last call. It is pulled up, and nothing drives it while the chip is
+/// not selected: so a word of zeros begins with a fall. That stays in the detector of edges, whose interrupt the core
+/// does not enable (RM0440, EXTI).
+#[inline(always)]
+fn has_fallen() -> bool {
+    let pin = BUS.input.pin;
+    let fell = pac::EXTI.pr(0).read().line(pin);
+    if fell {
+        pac::EXTI.pr(0).write(|w| w.set_line(pin, true));
+    }
+    fell
 }
 
 /// Takes the reading of the transfer that has ended since the last call, for any interrupt. Without such a transfer, or
@@ -210,7 +204,7 @@ fn missing(setup: &'static Setup) -> Result<bool, ReadingError> {
 pub fn take_ended(setup: &'static Setup, on_fault: impl FnOnce()) -> bool {
     acknowledge();
     let frame = received(setup.chip.interface.words);
-    note(reader().readings.take(setup.chip, &frame, setup.dropped, has_been_high), setup, on_fault)
+    note(reader().readings.take(setup.chip, &frame, setup.dropped, has_fallen), setup, on_fault)
 }
 
 /// Whether a reading has a tick. Without one, the next tick finds that a period has been missed.
@@ -244,9 +238,18 @@ fn acknowledge() {
     DMA.ifcr().write(|w| w.set_tcif(RECEIVE, true));
 }
 
+/// Whether the chip's data line is high, as soon as it must have risen after a transfer.
+fn has_risen() -> bool {
+    cortex_m::asm::delay((RISE * TIMER_CLOCK) as u32);
+    let BusPin { port, pin, .. } = BUS.input;
+    port.idr().read().idr(pin) == Idr::HIGH
+}
+
 /// A tick after a missed tick may have begun in the transfer of the next update, with words of two transfers. Waits for
 /// its end, and takes it. If it does not end in its time, or if the words are out of step, the reading is a fault,
 /// however many may fail: the last angle is lost. `elapsed` has the clock's counts since the update.
+///
+/// The first look at the line may have taken the fall of this transfer away, so that here the line has to rise after it.
 #[cold]
 #[inline(never)]
 pub fn take_again(elapsed: impl Fn() -> u32) {
@@ -272,7 +275,7 @@ pub fn take_again(elapsed: impl Fn() -> u32) {
     if !is_in_step {
         restart(chip, &[]);
         fail(ReadingError::Missing);
-    } else if let Err(error) = readings.take(chip, &received(words), setup.dropped, has_been_high) {
+    } else if let Err(error) = readings.take(chip, &received(words), setup.dropped, has_risen) {
         fail(error);
     }
 }
@@ -331,12 +334,12 @@ pub fn set_up(setup: &'static Setup) {
     });
     // The first may answer the set-up.
     exchange(&chip.command, words);
-    // From here on the line must rise.
-    has_been_high();
+    // From here on the line must fall.
+    has_fallen();
     cortex_m::asm::delay((RISE * TIMER_CLOCK) as u32);
     // A failure here is one of the first tick's, too.
     let mut readings = Readings::none();
-    let _ = readings.take(chip, &exchange(&chip.command, words), dropped, has_been_high);
+    let _ = readings.take(chip, &exchange(&chip.command, words), dropped, has_fallen);
     // SAFETY: the interrupt that uses it is not enabled yet.
     unsafe { MEMORY.reader.init(Reader { readings, fault: None, unfit, setup }) };
     if let Some(error) = unfit {
@@ -412,7 +415,7 @@ fn connect(chip: &Chip) {
     let [first, second, port] = [pac::GPIOA, pac::GPIOB, port].map(|port| port.as_ptr() as usize);
     let number = (port - first) / (second - first);
     pac::SYSCFG.exticr(pin / 4).modify(|w| w.set_exti(pin % 4, number as u8));
-    pac::EXTI.rtsr(0).modify(|w| w.set_line(pin, true));
+    pac::EXTI.ftsr(0).modify(|w| w.set_line(pin, true));
     pac::EXTI.imr(0).modify(|w| w.set_line(pin, true));
 }
 
