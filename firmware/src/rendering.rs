@@ -47,9 +47,13 @@ pub trait Rendering<N: Number>: Discretize<N> {
 }
 
 /// [`Scene::context`] of a scene in a number format, with the passivity that its anticogging leaves.
-pub fn context_beside_anticogging(scene: &Scene, format: Format) -> LawContext {
+/// As for the scene's verdict, so that a program has the code once.
+pub fn context_beside_anticogging<E: EnvironmentModel>(
+    scene: &Scene,
+    format: Format,
+) -> LawContext {
     let is_late = scene.environment.is_late();
-    let passivity = passivity_left::<Environment>(scene, is_late, format);
+    let passivity = passivity_left::<E>(scene, is_late, format);
     LawContext { passivity, ..scene.context() }
 }
 
@@ -69,7 +73,7 @@ impl<N: Number> Rendering<N> for Environment {
     }
 
     fn context(scene: &Scene) -> LawContext {
-        context_beside_anticogging(scene, N::FORMAT)
+        context_beside_anticogging::<Self>(scene, N::FORMAT)
     }
 }
 
@@ -112,7 +116,10 @@ impl<N: Number> Rendering<N> for EnvironmentBesideHost {
     }
 
     fn context(scene: &Scene<Self>) -> LawContext {
-        context_beside_anticogging(&scene.in_environment(scene.environment.environment), N::FORMAT)
+        context_beside_anticogging::<Environment>(
+            &scene.in_environment(scene.environment.environment),
+            N::FORMAT,
+        )
     }
 }
 

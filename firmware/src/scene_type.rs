@@ -157,7 +157,7 @@ impl<N: Number, S: SceneType> Rendering<N> for Typed<S> {
     fn context(scene: &Scene<Self>) -> LawContext {
         match Self::LIKE.anticogging {
             None => scene.context(),
-            Some(_) => context_beside_anticogging(&scene_data(scene), N::FORMAT),
+            Some(_) => context_beside_anticogging::<Self>(&scene_data(scene), N::FORMAT),
         }
     }
 }

@@ -19,7 +19,7 @@ pub fn compliance(scene: &Scene) -> Option<f64> {
         Coupling::Rigid => (0.0, 0.0),
         Coupling::Spring { stiffness } => (1.0 / stiffness, 1.0 / stiffness),
         Coupling::Matched => {
-            let delta = context_beside_anticogging(scene, Format::F64).passivity;
+            let delta = context_beside_anticogging::<Environment>(scene, Format::F64).passivity;
             let timing = scene.timing;
             let matched = MatchedCoupling::of(
                 timing.period,

@@ -328,7 +328,7 @@ impl Search {
             Kind::Matched => Coupling::Matched,
             Kind::Spring => {
                 let longest = scene.timing.worst_period.unwrap_or(period);
-                let left = context_beside_anticogging(&scene, Format::F64).passivity;
+                let left = context_beside_anticogging::<Environment>(&scene, Format::F64).passivity;
                 let standard = 2.0 * left / longest;
                 Coupling::Spring { stiffness: inward(standard, 2.0).next()? }
             }

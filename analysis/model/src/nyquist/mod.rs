@@ -16,6 +16,7 @@ pub mod words;
 use std::f64::consts::PI;
 
 use haptic_servo::certificate::{Assessment, LoopTransfers, PassivityProblem, Rule, assess};
+use haptic_servo::environment::Environment;
 use haptic_servo::number::Format;
 use haptic_servo::passivity::interval::Interval;
 use haptic_servo::passivity::lagged::{LagIntervals, SampledResponse};
@@ -351,7 +352,7 @@ impl PortCurve {
             path: Response::new(response.transfer(period)),
             response,
             period: scene.timing.period,
-            delta: context_beside_anticogging(scene, Format::F64).passivity,
+            delta: context_beside_anticogging::<Environment>(scene, Format::F64).passivity,
         })
     }
 

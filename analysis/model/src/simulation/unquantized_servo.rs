@@ -29,7 +29,7 @@ impl UnquantizedServo {
     /// Where coupling and environment have no unique solution, or the environment needs samples
     /// from the future.
     pub fn new(scene: &Scene) -> Result<Self, BuildError> {
-        let context = context_beside_anticogging(scene, Format::F64);
+        let context = context_beside_anticogging::<Environment>(scene, Format::F64);
         let memory = AnyMemory::of(&context)?;
         let law = Discretize::<f64>::law(&scene.environment, &context)?;
         let compliance = scene.coupling.compliance(memory.compliance())?;

@@ -120,7 +120,7 @@ fn the_scene_has_the_rest_of_the_passivity() {
     // The servo's coupling is designed for the rest, too.
     let matched =
         Scene { coupling: Coupling::Matched, ..scene(1e-3, None, free(1).beside(anticogging)) };
-    let context = context_beside_anticogging(&matched, Format::F32);
+    let context = context_beside_anticogging::<Environment>(&matched, Format::F32);
     assert!((context.passivity / left - 1.0).abs() < 1e-6, "{}", context.passivity);
 }
 
