@@ -63,6 +63,7 @@ impl End {
     }
 
     /// The same end of a time in s, in periods.
+    #[cfg_attr(target_os = "none", inline(never))]
     const fn time(self, time: f64, n: &LoopIntervals) -> f64 {
         if time == 0.0 {
             return 0.0;

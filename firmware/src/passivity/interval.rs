@@ -66,6 +66,7 @@ impl Interval {
     }
 
     /// Middle of the interval, rounded.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub const fn midpoint(self) -> f64 {
         self.lo * 0.5 + self.hi * 0.5
     }
@@ -217,6 +218,7 @@ impl Interval {
     }
 
     /// Non-negative square root of the non-negative part; [`Interval::ENTIRE`] if there is none.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub const fn sqrt(self) -> Self {
         if self.hi < 0.0 || !self.is_finite() {
             return Self::ENTIRE;
