@@ -41,7 +41,7 @@ use crate::power_reading::PowerReading;
 use crate::rendering::Rendering;
 use crate::reset::ResetCause;
 use crate::scene::Scene;
-use crate::servo::{OutputMode, PreparedServo, SupportsTiming};
+use crate::servo::{OutputMode, PreparedServo, RenderingOptions, SupportsTiming, Transducers};
 use crate::servo_loop::{self, FrameReader, Requests};
 use crate::tuning::{self, Tunable};
 
@@ -85,7 +85,8 @@ struct Submitted<E> {
 /// The board's end of the wire; `LENGTH` is the length of the servo's queue of frames.
 pub struct Session<'a, E: Rendering<N>, N: Number, M, const LENGTH: usize> {
     info: BoardInfo,
-    program: Program<E>,
+    transducers: Transducers,
+    rendering: RenderingOptions,
     requests: Requests<'a, PreparedServo<E, N, M>>,
     frames: FrameReader<'a, LENGTH>,
     decoder: Decoder<{ LONGEST_TO_BOARD + CHECKSUM }>,
@@ -130,7 +131,8 @@ where
             stream: Stream::new(program.scene.timing.period),
             turn: Turn::FIRST,
             active: Set { scene: program.scene, margin },
-            program,
+            transducers: program.transducers,
+            rendering: program.rendering,
             revision: 0,
             requested: None,
             submitted: None,
@@ -256,9 +258,8 @@ where
         let report = if E::Host::is_budget_due(&mut self.reported) {
             E::Host::host(&self.active.scene.environment.budget()).map(HostReport::Budget)
         } else {
-            let Program { transducers, scene, .. } = &self.program;
-            let count_a_tick =
-                core::f64::consts::TAU / transducers.counts_per_turn / scene.timing.period;
+            let (transducers, period) = (&self.transducers, self.active.scene.timing.period);
+            let count_a_tick = core::f64::consts::TAU / transducers.counts_per_turn / period;
             let taken = E::Host::report(self.requests.host(), &mut self.reported);
             taken.map(|taken| HostReport::State(HostState::of(&taken, count_a_tick)))
         };
@@ -337,8 +338,7 @@ where
             return;
         };
         let scene = budgeted.as_ref().unwrap_or(&self.active.scene);
-        let Program { transducers, rendering, .. } = &self.program;
-        let refusal = match tuning::prepare(scene, &changes, transducers, rendering) {
+        let refusal = match tuning::prepare(scene, &changes, &self.transducers, &self.rendering) {
             Ok(prepared) => {
                 let set = Set { scene: prepared.scene, margin: prepared.margin };
                 match self.requests.submit(prepared.rendering) {
@@ -355,8 +355,8 @@ where
     }
 
     fn board(&self) -> BoardUnits {
-        let Program { transducers, rendering, .. } = &self.program;
-        let period = self.program.scene.timing.period;
+        let Self { transducers, rendering, .. } = self;
+        let period = self.active.scene.timing.period;
         BoardUnits {
             period,
             timer_counts: self.info.timer_counts,
@@ -368,7 +368,7 @@ where
     }
 
     fn description(&self) -> Description {
-        let Program { transducers, rendering, .. } = self.program;
+        let Self { transducers, rendering, .. } = *self;
         let (scene, format, timing) = (scene_data(&self.active.scene), N::FORMAT, M::TIMING);
         Description { scene, transducers, rendering, format, timing }
     }
