@@ -59,6 +59,13 @@ pub enum BuildError {
         allowed + over
     )]
     Flash { program: String, board: String, over: u64, allowed: u64 },
+    /// The same of its variables.
+    #[error(
+        "{program} takes {} bytes of RAM on the board {board}, {over} more than the {allowed} that it may: build it \
+         in f32, give its tables of torques fewer values, or leave out `[anticogging]` or `[host]`",
+        allowed + over
+    )]
+    Ram { program: String, board: String, over: u64, allowed: u64 },
 }
 
 /// The compiler that builds for the board.
@@ -345,7 +352,7 @@ impl Toolchain {
         cargo.args(["--release", "--package", package, "--target", TARGET]);
         cargo.args(names.iter().flat_map(|name| ["--bin", name])).args(["--features", features]);
         let built = output_of(&names.join(", "), &mut cargo);
-        built.map_err(|error| self.by_flash(error, features))?;
+        built.map_err(|error| self.by_memory(error, features))?;
         let folder = self.target_folder().join(TARGET).join("release");
         let keep =
             |name: &&str| self.workspace.keep(&folder.join(name), &format!("{name}{suffix}"));
@@ -353,17 +360,19 @@ impl Toolchain {
     }
 
     /// An error of a program with these features, of which the first is its board: in bytes, where it is that the
-    /// program does not fit.
-    fn by_flash(&self, error: BuildError, features: &str) -> BuildError {
-        match (error, self.memory()) {
-            (BuildError::Compile { program, output }, Ok(Memory { flash: allowed, .. })) => {
-                let Some(over) = overflow_of_flash(&output) else {
-                    return BuildError::Compile { program, output };
-                };
-                let board = features.split(',').next().unwrap_or_default().into();
-                BuildError::Flash { program, board, over, allowed }
-            }
-            (error, _) => error,
+    /// program does not fit. What the flash lacks is mostly more, so that it is told first.
+    fn by_memory(&self, error: BuildError, features: &str) -> BuildError {
+        let (program, output, memory) = match (error, self.memory()) {
+            (BuildError::Compile { program, output }, Ok(memory)) => (program, output, memory),
+            (error, _) => return error,
+        };
+        let board = features.split(',').next().unwrap_or_default().into();
+        if let Some(over) = overflow_of("FLASH", &output) {
+            return BuildError::Flash { program, board, over, allowed: memory.flash };
+        }
+        match overflow_of("RAM", &output) {
+            Some(over) => BuildError::Ram { program, board, over, allowed: memory.ram },
+            None => BuildError::Compile { program, output },
         }
     }
 
@@ -419,10 +428,11 @@ fn executable(message: &str, name: &str) -> Option<PathBuf> {
     is_it.then(|| message["executable"].as_str().map(PathBuf::from)).flatten()
 }
 
-/// The bytes that a program has more than the flash, in the linker's output: it names each section that ends
-/// beyond.
-fn overflow_of_flash(output: &str) -> Option<u64> {
-    let ends = output.split("will not fit in region 'FLASH': overflowed by ").skip(1);
+/// The bytes that a program has more than a region of the linker's map, in the linker's output: it names each section
+/// that ends beyond.
+fn overflow_of(region: &str, output: &str) -> Option<u64> {
+    let beyond = format!("will not fit in region '{region}': overflowed by ");
+    let ends = output.split(&beyond).skip(1);
     ends.filter_map(|end| end.split(' ').next()?.parse().ok()).max()
 }
 
@@ -524,12 +534,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn reads_by_how_much_a_program_overflows_the_flash() {
+    fn reads_by_how_much_a_program_overflows_a_memory() {
         let output = "  = note: rust-lld: error: section '.text' will not fit in region 'FLASH': overflowed by 7 \
                       bytes\n          rust-lld: error: section '.rodata' will not fit in region 'FLASH': \
                       overflowed by 2307 bytes\n          rust-lld: error: section '.bss' will not fit in region \
                       'RAM': overflowed by 9000 bytes\n";
-        assert_eq!(overflow_of_flash(output), Some(2307));
-        assert_eq!(overflow_of_flash("error: could not compile"), None);
+        let over = |output| ["FLASH", "RAM"].map(|region| overflow_of(region, output));
+        assert_eq!(over(output), [Some(2307), Some(9000)]);
+        assert_eq!(over("error: could not compile"), [None; 2]);
     }
 }

@@ -114,25 +114,41 @@ fn a_board_with_a_bridge_is_armed_and_watched_over_its_serial_port() {
     assert_eq!(tuned(&board, &[]).1["parameters"]["stiffness"], 15.0);
 }
 
-/// The largest programs: the current loop of a bridge, what opposes cogging, and a host or a chip.
+/// The largest programs: the current loop of a bridge, what opposes cogging, a host and a chip. Of one that is
+/// larger, the refusal has the bytes.
 #[test]
 #[ignore = "builds for minutes"]
-fn a_host_or_a_chip_fits_a_bridge_beside_what_opposes_cogging() {
+fn a_host_and_a_chip_fit_a_bridge_beside_what_opposes_cogging() {
     let folder = TempDir::new().unwrap();
     let cogging = "\n[anticogging]\ntorque = [0, 1e-4, 2e-4, 1e-4, 0, -1e-4, -2e-4, -1e-4]\n";
+    let host = block("docs/host-torque.md", "direct").replace("torque = 0.6 ", "torque = 0.5 ");
+    let mt6701 = "[encoder]\nchip = \"mt6701\"\nage = [4.5e-6, 4.2e-5]\n[limits]\n";
+    let both = host.replace("counts_per_turn = 16384\n", "").replace("[limits]\n", mt6701);
+    let (device, rest) = host.split_once("[environment]").unwrap();
+    let (_, rest) = rest.split_once("[limits]").unwrap();
+    let profile = format!(
+        "{device}[environment]\ntype = \"profile\"\ndelay = 1\ndamping = 0.0002\ndrag = 0.0005\n\
+         shape = [{{ type = \"detents\", count = 24, torque = 0.02 }}, \
+         {{ type = \"end_stops\", from = -1.5, to = 1.5, stiffness = 0.5 }}]\n\
+         wall = {{ stiffness = 0.5, damping = 0, delay = 1, face = 1.0, one_sided = true }}\n[limits]{rest}"
+    );
     let chip = include_str!("../../virtual-board/tests/board/bridge/magnetic_knob.toml");
-    for (name, scene) in [
-        (
-            "host.toml",
-            block("docs/host-torque.md", "direct").replace("torque = 0.6 ", "torque = 0.5 "),
-        ),
-        ("chip.toml", chip.replace("full_scale = 0.3", "full_scale = 0.35")),
+    let chip = chip.replace("full_scale = 0.3", "full_scale = 0.35");
+    for (name, scene, format, refused) in [
+        ("host.toml", &host, "f32", None),
+        ("host.toml", &host, "fixed", None),
+        ("chip.toml", &chip, "f32", None),
+        ("both.toml", &both, "f32", None),
+        ("profile.toml", &profile, "f32", Some("more than the 6144 that it may: build it in f32")),
     ] {
         let file = folder.path().join(name);
-        std::fs::write(&file, scene + cogging).unwrap();
+        std::fs::write(&file, format!("{scene}{cogging}")).unwrap();
         let file = file.to_str().unwrap();
-        let built = haptic(&["flash", "--build-only", "--board", "b-g431b-esc1", file]);
-        assert_eq!(built.status.code(), Some(0), "{}", String::from_utf8_lossy(&built.stderr));
+        let flash = ["flash", "--build-only", "--board", "b-g431b-esc1", "--format", format, file];
+        let built = haptic(&flash);
+        let error = String::from_utf8_lossy(&built.stderr);
+        assert_eq!(built.status.code(), Some(if refused.is_some() { 2 } else { 0 }), "{error}");
+        assert!(error.contains(refused.unwrap_or_default()), "{error}");
     }
 }
 
