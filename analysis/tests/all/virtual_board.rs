@@ -114,8 +114,8 @@ fn a_board_with_a_bridge_is_armed_and_watched_over_its_serial_port() {
     assert_eq!(tuned(&board, &[]).1["parameters"]["stiffness"], 15.0);
 }
 
-/// The largest programs: the current loop of a bridge, what opposes cogging, a host and a chip. Of one that is
-/// larger, the refusal has the bytes.
+/// The largest programs: the current loop of a bridge, what opposes cogging, a host and a chip. The refusal
+/// of a larger program has the bytes.
 #[test]
 #[ignore = "builds for minutes"]
 fn a_host_and_a_chip_fit_a_bridge_beside_what_opposes_cogging() {
