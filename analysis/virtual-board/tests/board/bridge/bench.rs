@@ -22,8 +22,7 @@ use crate::bench::{Bench, MID_SCALE, build_for};
 pub const INSTANT: u64 = 2 * CURRENT_LOOP.timer_counts() as u64;
 
 /// The programs that drive the bridge.
-const PROGRAMS: [&str; 5] =
-    ["bridge_identify", "bridge_wall", "brushless_identify", "brushless_index", "brushless_wall"];
+const PROGRAMS: [&str; 4] = ["bridge_identify", "bridge_wall", "brushless_index", "brushless_wall"];
 
 /// A program's file. All of them are built when the first is asked for.
 fn program(name: &str) -> &'static PathBuf {

@@ -175,26 +175,21 @@ fn the_host_measures_the_device_and_how_late_its_torque_is() {
     assert!(mass > 0.4 * device.inertia, "{mass}");
 }
 
-/// Aligned by the program itself; the numbers of its motor are those of a phase.
-#[test]
-fn the_host_measures_a_device_with_a_brushless_motor() {
-    measured(&brushless(None));
-}
-
 /// An update: the virtual board moves a motor's shaft at each update, so that the chip, which is selected 5.5 us
 /// before it, has the position of the update before.
 const AGE: f64 = 2.5e-5;
 
-/// The same motor, whose angle an MT6701 reads: it makes the delay longer.
+/// A brushless motor, aligned by the program itself; the numbers of its motor are those of a phase. An MT6701
+/// reads its angle, which makes the delay longer.
 #[test]
-fn the_host_measures_a_device_by_a_chip() {
-    measured(&brushless(Some((&MT6701, AGE))));
+fn the_host_measures_a_device_with_a_brushless_motor_by_a_chip() {
+    measured(&brushless());
 }
 
 /// A reading that fails beyond a late one ends the sweep, with the gates off.
 #[test]
 fn a_sweep_ends_where_the_chip_disappears() {
-    let what = brushless(Some((&MT6701, AGE)));
+    let what = brushless();
     let mut bench = booted(&what);
     circuit(&mut bench).supply = supply(&what.drive);
     bench.run(20);
@@ -208,14 +203,14 @@ fn a_sweep_ends_where_the_chip_disappears() {
     assert!(!bench.is_on());
 }
 
-fn brushless(chip: Option<(&'static Chip, f64)>) -> Measurement {
+fn brushless() -> Measurement {
     Measurement {
         program: "brushless_identify",
         motor: wired([1, 0, 2], 0.7),
         drive: brushless_wall::DRIVE,
         device: brushless_wall::SCENE.device,
         counts_per_turn: brushless_wall::TRANSDUCERS.counts_per_turn,
-        chip,
+        chip: Some((&MT6701, AGE)),
         ticks: brushless_identify::SWEEP.ticks(),
         current_loop: brushless_identify::CURRENT_LOOP,
         // Of little damping a sweep at these codes finds less.
