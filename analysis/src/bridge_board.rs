@@ -45,7 +45,8 @@ impl BridgeBoard {
         transducers: Transducers,
         is_magnetic: bool,
     ) -> Result<Self, VirtualBoardError> {
-        let board = VirtualBoard::boot(program, board, elf, Some(current_loop.drive()))?;
+        let board =
+            VirtualBoard::boot(program, board, elf, Some(current_loop.drive()), is_magnetic)?;
         let current_loop = *current_loop;
         Ok(Self { board, current_loop, transducers, is_magnetic, sample: None, past: Vec::new() })
     }

@@ -39,6 +39,8 @@ pub enum Backend<'a> {
         elf: &'a Path,
         /// The period of its servo in s.
         period: f64,
+        /// Whether it reads a magnetic encoder.
+        is_magnetic: bool,
     },
 }
 
@@ -160,8 +162,8 @@ fn run_lockstep(
             let run = run_beside(plant, controller, remote, ticks, progress)?;
             (run, Some(BoardMeasurement::Emulated(Box::new(board.finish()?))))
         }
-        Some(Backend::VirtualBoard { program, board, elf, period }) => {
-            let mut board = VirtualBoard::boot(program, board, elf, None)?;
+        Some(Backend::VirtualBoard { program, board, elf, period, is_magnetic }) => {
+            let mut board = VirtualBoard::boot(program, board, elf, None, is_magnetic)?;
             board.arm_and_wait(period)?;
             let remote = |count, _: &Tick| board.exchange(count, &[]).map(|(code, _)| code);
             let run = run_beside(plant, controller, remote, ticks, progress)?;

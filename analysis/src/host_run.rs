@@ -134,8 +134,8 @@ impl BesideHost {
                 let report = BoardMeasurement::Emulated(Box::new(emulator.finish()?));
                 self.replayed(recorded, controller, OutputTiming::Simultaneous, report)
             }
-            Backend::VirtualBoard { program, board, elf, period } => {
-                let mut board = VirtualBoard::boot(program, board, elf, None)?;
+            Backend::VirtualBoard { program, board, elf, period, is_magnetic } => {
+                let mut board = VirtualBoard::boot(program, board, elf, None, is_magnetic)?;
                 board.arm_and_wait(period)?;
                 let exchange = |count, bytes: &[u8]| Ok(board.exchange(count, bytes)?);
                 let mut held = Held { exchange, device, count: 0 };

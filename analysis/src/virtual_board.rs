@@ -113,6 +113,31 @@ pub struct VirtualBoard {
     /// The encoder's position in counts, as the simulated world has it, and that a period of the modulation before.
     count: i32,
     before: i32,
+    /// Of a magnetic encoder's reading at rest: none of a counter.
+    rest: Option<Rest>,
+}
+
+/// A chip that reads the same angle [200 times](haptic_servo::magnetic::Chip::frozen_after) counts as stopped. So one
+/// position in a hundred at rest is off by a count.
+#[derive(Default)]
+struct Rest {
+    /// The position without that, and how often it was the same.
+    count: i32,
+    equal: u32,
+}
+
+impl Rest {
+    const LONGEST: u32 = 100;
+
+    fn reads(&mut self, count: i32, may_be_off: bool) -> i32 {
+        self.equal = if count == self.count { self.equal + 1 } else { 0 };
+        self.count = count;
+        if !may_be_off || self.equal < Self::LONGEST {
+            return count;
+        }
+        self.equal = 0;
+        count + 1
+    }
 }
 
 impl VirtualBoard {
@@ -123,6 +148,7 @@ impl VirtualBoard {
         board: BoardModel,
         elf: &Path,
         drive: Option<&Drive>,
+        is_magnetic: bool,
     ) -> Result<Self, VirtualBoardError> {
         let mut process = Command::new(program)
             .arg(board.name())
@@ -137,7 +163,8 @@ impl VirtualBoard {
         let input = process.stdin.take().ok_or_else(missing)?;
         let output = process.stdout.take().ok_or_else(missing)?;
         let (input, output) = (Some(BufWriter::new(input)), BufReader::new(output));
-        Ok(Self { process, input, output, count: 0, before: 0 })
+        let rest = is_magnetic.then(Rest::default);
+        Ok(Self { process, input, output, count: 0, before: 0, rest })
     }
 
     /// Waits for the end of the sample that runs.
@@ -176,7 +203,7 @@ impl VirtualBoard {
         let mut arm = frame(&ToBoard::Arm { id: 0 });
         for _ in 0..LONGEST_ARMING {
             let on = self.sample()?.amplifier;
-            self.answer(self.count, &std::mem::take(&mut arm))?;
+            self.answer_at_rest(&std::mem::take(&mut arm), true)?;
             if on {
                 return self.hold_still(fading_samples(period));
             }
@@ -186,11 +213,18 @@ impl VirtualBoard {
 
     /// Runs this many samples with the device at rest; then the board waits for the first count.
     fn hold_still(&mut self, samples: usize) -> Result<(), VirtualBoardError> {
-        for _ in 1..samples {
+        for left in (1..samples).rev() {
             self.sample()?;
-            self.answer(self.count, &[])?;
+            // The servo forgets that before the first count.
+            self.answer_at_rest(&[], left > Rest::LONGEST as usize / 2)?;
         }
         self.sample().map(drop)
+    }
+
+    fn answer_at_rest(&mut self, bytes: &[u8], may_be_off: bool) -> Result<(), VirtualBoardError> {
+        let count =
+            self.rest.as_mut().map_or(self.count, |rest| rest.reads(rest.count, may_be_off));
+        self.answer(count, bytes)
     }
 
     /// The encoder's position in counts.
@@ -215,20 +249,24 @@ impl VirtualBoard {
     }
 
     fn read_sample(&mut self, mut shaft: Option<&mut dyn Shaft>) -> io::Result<Sample> {
+        let mut is_first = true;
         loop {
             match (self.bytes()?, &mut shaft) {
                 ([SAMPLE], _) => return self.rest_of_sample(),
-                ([PWM_PERIOD], Some(shaft)) => self.turn(*shaft)?,
+                ([PWM_PERIOD], Some(shaft)) => {
+                    self.turn(*shaft, std::mem::take(&mut is_first))?;
+                }
                 _ => return Err(io::ErrorKind::InvalidData.into()),
             }
         }
     }
 
-    /// A period of the modulation has ended.
-    fn turn(&mut self, shaft: &mut dyn Shaft) -> io::Result<()> {
+    /// A period of the modulation has ended, the first of a sample or another, of which the servo reads one.
+    fn turn(&mut self, shaft: &mut dyn Shaft, is_first: bool) -> io::Result<()> {
         let torque = f64::from_le_bytes(self.bytes()?);
         let seconds = f64::from_le_bytes(self.bytes()?);
         let ShaftMotion { count, angle, speed } = shaft.turn(torque, seconds);
+        let count = self.rest.as_mut().map_or(count, |rest| rest.reads(count, is_first));
         let turned = count.wrapping_sub(self.count);
         (self.before, self.count) = (self.count, count);
         let input = self.input.as_mut().ok_or(io::ErrorKind::BrokenPipe)?;

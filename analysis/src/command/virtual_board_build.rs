@@ -66,7 +66,7 @@ impl VirtualBoardBuild {
 
     /// Boots a board whose program drives a DAC.
     pub fn boot(&self) -> Result<VirtualBoard, VirtualBoardError> {
-        VirtualBoard::boot(&self.executable, self.board, &self.elf, None)
+        VirtualBoard::boot(&self.executable, self.board, &self.elf, None, self.is_magnetic)
     }
 
     /// Boots the board with a motor, if its program drives the board's own bridge.
@@ -86,6 +86,7 @@ impl VirtualBoardBuild {
     /// The board as the backend of a comparison with the host; `period` is its servo's in s.
     pub fn backend(&self, period: f64) -> Backend<'_> {
         let program = &self.executable;
-        Backend::VirtualBoard { program, board: self.board, elf: &self.elf, period }
+        let (board, elf, is_magnetic) = (self.board, &self.elf, self.is_magnetic);
+        Backend::VirtualBoard { program, board, elf, period, is_magnetic }
     }
 }

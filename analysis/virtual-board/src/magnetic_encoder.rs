@@ -44,6 +44,8 @@ pub struct MagneticEncoder {
     pub delay: u64,
     /// Peak of its noise in counts.
     pub noise: i64,
+    /// Whether an AS504x answers with the angle of this transfer, in a world whose positions have its age already.
+    pub is_prompt: bool,
     /// Its failure.
     pub failure: Option<Failure>,
     /// The last two positions in counts, each with its time.
@@ -62,6 +64,8 @@ pub struct MagneticEncoder {
     /// The next transfer of a chip that answers late.
     answer: u64,
     writes: Option<u64>,
+    /// Whether that has an angle.
+    has_angle: bool,
     predicts: bool,
     flagged: bool,
     frozen: Option<i64>,
@@ -86,6 +90,7 @@ impl MagneticEncoder {
             model,
             delay: 0,
             noise: 0,
+            is_prompt: false,
             failure: None,
             positions: [(0, position); 2],
             random: 1,
@@ -97,6 +102,7 @@ impl MagneticEncoder {
             input: (0, 0),
             answer: 0,
             writes: None,
+            has_angle: false,
             predicts: model == Model::As5047p,
             flagged: false,
             frozen: None,
@@ -166,6 +172,10 @@ impl MagneticEncoder {
             }
             Model::As5048a | Model::As5047p => {
                 self.answered = self.sampled;
+                if self.is_prompt && self.has_angle {
+                    let angle = self.sample(now);
+                    self.answer = self.checked(angle as u64);
+                }
                 (self.answer, 16)
             }
         };
@@ -225,6 +235,7 @@ impl MagneticEncoder {
             return;
         }
         self.flagged |= word.count_ones() % 2 != 0 || self.failure == Some(Failure::Flag);
+        self.has_angle = false;
         let content = match self.writes.take() {
             Some(0x18) => {
                 self.predicts &= word & 1 << 4 == 0;
@@ -237,12 +248,18 @@ impl MagneticEncoder {
             }
             None => self.register(word & 0x3FFF, now),
         };
+        self.answer = self.checked(content);
+    }
+
+    /// An answer with its error flag and its parity.
+    fn checked(&self, content: u64) -> u64 {
         let answer = content | u64::from(self.flagged) << 14;
-        self.answer = answer | u64::from(answer.count_ones() % 2) << 15;
+        answer | u64::from(answer.count_ones() % 2) << 15
     }
 
     fn register(&mut self, address: u64, now: u64) -> u64 {
         let angle = if self.model == Model::As5048a { 0x3FFF } else { 0x3FFE };
+        self.has_angle = address == angle;
         match address {
             0x0001 => {
                 self.flagged = false;

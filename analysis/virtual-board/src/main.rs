@@ -112,7 +112,9 @@ fn connect_encoder(machine: &mut Machine) -> Result<(), Failure> {
     let name = String::from_utf8_lossy(&bytes);
     let name = name.trim_end_matches('\0');
     let chip = MagneticEncoder::find(name, 0);
-    let chip = chip.ok_or_else(|| format!("there is no virtual chip {name:?} for this program"))?;
+    let mut chip =
+        chip.ok_or_else(|| format!("there is no virtual chip {name:?} for this program"))?;
+    chip.is_prompt = true;
     machine.board_mut().magnetic = Some(chip);
     Ok(())
 }
