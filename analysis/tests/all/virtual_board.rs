@@ -114,6 +114,34 @@ fn a_board_with_a_bridge_is_armed_and_watched_over_its_serial_port() {
     assert_eq!(tuned(&board, &[]).1["parameters"]["stiffness"], 15.0);
 }
 
+/// The device has the age of its chip's readings, so that its counts are those that a chip which answers a period later
+/// gives; and it does not rest so well that the chip counts as stopped.
+#[test]
+#[ignore = "builds for a minute"]
+fn a_chip_that_answers_late_has_the_codes_of_the_host() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("late.toml");
+    let scene = "name = \"late\"\ndevice = { inertia = 2.2e-5, damping = 0.022 }\nservo = { period = 0.0001 }\n\
+                 environment = { type = \"damper-wall\", stiffness = 5.0, damping = 0.0, delay = 1 }\n\
+                 encoder = { chip = \"as5048a\", age = [1.81e-4, 3e-4], noise = 1 }\n\
+                 limits = { torque = 0.5, full_scale = 1.0 }\n";
+    std::fs::write(&file, scene).unwrap();
+    let ran = haptic(&[
+        "run",
+        file.to_str().unwrap(),
+        "--target",
+        "board:nucleo-g474re",
+        "--ticks",
+        "8000",
+    ]);
+    let out = String::from_utf8_lossy(&ran.stdout);
+    assert!(
+        out.contains("codes equal: 5000 of 5000"),
+        "{out}{}",
+        String::from_utf8_lossy(&ran.stderr)
+    );
+}
+
 /// The largest programs: the current loop of a bridge, what opposes cogging, a host and a chip. The refusal
 /// of a larger program has the bytes.
 #[test]

@@ -91,7 +91,19 @@ impl EncoderTable {
             _ => Transfers::at_count(period),
         };
         chip.check(&scene.latency, &transfers, counts)
-            .map_err(|error| top.conflict(&key::CHIP, format!("has no certificate: {error}")))
+            .map_err(|error| top.conflict(&key::CHIP, format!("has no certificate: {error}")))?;
+        match chip.frozen_after {
+            Some(equal) if self.reading.noise < 1.0 => {
+                let reason = format!(
+                    "needs `{}` of 1 or more, which is {}: without noise its angle is the same {equal} times, and it \
+                     counts as stopped",
+                    key::NOISE.path,
+                    self.reading.noise
+                );
+                Err(top.conflict(&key::CHIP, reason))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// The scene read by this encoder, with the device's friction.
