@@ -136,7 +136,7 @@ fn a_chip_that_answers_late_has_the_codes_of_the_host() {
     ]);
     let out = String::from_utf8_lossy(&ran.stdout);
     assert!(
-        out.contains("codes equal: 5000 of 5000"),
+        out.contains("codes equal: 8000 of 8000"),
         "{out}{}",
         String::from_utf8_lossy(&ran.stderr)
     );
