@@ -573,7 +573,7 @@ const fn clamped(value: i64) -> i64 {
     value & !(value >> 63)
 }
 
-/// Twice a number between -[`LARGEST`] and twice that, or zero if it is negative.
+/// Twice a number of magnitude up to twice [`LARGEST`], or zero if it is negative.
 #[inline(always)]
 fn twice_positive(value: i32) -> u32 {
     (value << 1).clamp(0, 4 * LARGEST - 1).cast_unsigned()
