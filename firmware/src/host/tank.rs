@@ -317,8 +317,8 @@ impl<D: DelayLine<i64>, const LAGS: usize> Tank<D, LAGS> {
     #[inline(never)]
     fn refuse(&mut self, paid: i64, wanted: i32) -> i32 {
         self.missing = paid.wrapping_sub(self.cost(wanted));
-        let given = self.affordable(wanted);
-        self.give(given);
+        let (given, cost) = self.affordable(wanted);
+        self.give_at(given, cost, self.missing.wrapping_add(cost));
         wanted - given
     }
 
@@ -332,7 +332,7 @@ impl<D: DelayLine<i64>, const LAGS: usize> Tank<D, LAGS> {
     /// The torque in codes that the motor gets of a wanted torque in [range](Self::in_range).
     #[inline(always)]
     pub fn allowed(&mut self, wanted: i32) -> i32 {
-        if self.pays(self.cost(wanted)) { wanted } else { self.affordable(wanted) }
+        if self.pays(self.cost(wanted)) { wanted } else { self.affordable(wanted).0 }
     }
 
     /// Whether the level pays for a command that costs this much.
@@ -371,20 +371,31 @@ impl<D: DelayLine<i64>, const LAGS: usize> Tank<D, LAGS> {
         self.numbers.largest
     }
 
-    /// The largest command of the same sign that the level pays: costs rise on both sides of zero.
+    /// The largest command of the same sign that the level pays, of one that it does not pay, and its cost.
+    ///
+    /// A command of `x` steps costs `x (p x + 2 b)`, or less by up to `x`, and this has a root where it takes all
+    /// of the room. Where there is room, floating point and the rounding of costs move the root by `2^-9` of a code
+    /// and `1/p` steps, together less than a code. The level pays the code below the root, or the next: that is
+    /// decided in whole numbers. So the command is never more than the level pays, and at most a code less.
     #[cold]
     #[inline(never)]
-    fn affordable(&mut self, wanted: i32) -> i32 {
+    fn affordable(&mut self, wanted: i32) -> (i32, i64) {
+        const NEAR: f32 = 1.0 / 512.0;
         cold_path();
         // However a hand has moved, it did not get more than the energy, which is two reserves below any level.
         let TankNumbers { owed, .. } = self.numbers;
         self.missing = self.missing.min(self.cap() + 2 * owed);
-        let (mut least, mut most) = (0, wanted);
-        while (most - least).abs() > 1 {
-            let middle = (least + most) / 2;
-            if self.pays(self.cost(middle)) { least = middle } else { most = middle }
-        }
-        least
+        let (sign, room) = (wanted.signum(), rounded(self.cap() - 1 - self.missing));
+        let lagging = self.lagging.first();
+        let [p, b] = lagging.map_or([1.0, 0.0], |lagging| lagging.weights(sign));
+        let Some(root) = root(b * b + p * room) else { return (0, 0) };
+        let steps = if b > 0.0 { room / (b + root) } else { (root - b) / p };
+        // The cast saturates.
+        let codes = (steps / (1 << STEP_BITS) as f32 + NEAR) as i32;
+        let most = codes.min(wanted.abs() - 1);
+        let priced = |codes| (sign * codes, self.cost(sign * codes));
+        let mut candidates = [most, most - 1].into_iter().filter(|codes| *codes > 0).map(priced);
+        candidates.find(|&(_, cost)| self.pays(cost)).unwrap_or((0, 0))
     }
 
     /// Gives this command in codes to the motor. It must be [allowed](Self::allowed), or between zero and that,
@@ -505,6 +516,9 @@ impl<D: DelayLine<i64>, const LAGS: usize> Tank<D, LAGS> {
 }
 
 impl<D: DelayLine<i64>> Lagging<D> {
+    /// Steps above the error of both coefficients of a cost and its rounding.
+    const ABOVE: i32 = 8;
+
     fn at_rest(amplifier: Amplifier, line: &D) -> Self {
         let (energies, unfinished_later) = (line.clone(), line.clone());
         Self { amplifier, torque: 0, before: 0, rest: 0, energies, unfinished: 0, unfinished_later }
@@ -512,12 +526,22 @@ impl<D: DelayLine<i64>> Lagging<D> {
 
     /// What a command costs.
     fn cost(&self, command: i32) -> i64 {
-        let Amplifier { price, pull: [of_torque, of_before], .. } = self.amplifier;
-        let pulled = product(self.torque, of_torque) + product(self.before, of_before);
-        let sum = (product(command, price) + 2 * pulled) >> Amplifier::BITS;
-        // Above the error of both coefficients and the rounding.
-        let above = if command > 0 { 8 } else { -8 };
-        i64::from(command) * (sum + above)
+        let sum = (product(command, self.amplifier.price) + 2 * self.pulled()) >> Amplifier::BITS;
+        let above = if command > 0 { Self::ABOVE } else { -Self::ABOVE };
+        i64::from(command) * (sum + i64::from(above))
+    }
+
+    /// Half of that of a command of one step for the torques before it.
+    fn pulled(&self) -> i64 {
+        let Amplifier { pull: [of_torque, of_before], .. } = self.amplifier;
+        product(self.torque, of_torque) + product(self.before, of_before)
+    }
+
+    /// Of a command with this sign: `p` and `b` of its cost `x (p x + 2 b)`.
+    fn weights(&self, sign: i32) -> [f32; 2] {
+        let one = (1 << Amplifier::BITS) as f32;
+        let pulled = sign as f32 * rounded(self.pulled());
+        [self.amplifier.price as f32 / one, pulled / one + 0.5 * Self::ABOVE as f32]
     }
 
     /// Gives a command of this cost; returns the mean torque of the tick in which it begins.
@@ -565,6 +589,19 @@ impl<D: DelayLine<i64>> Lagging<D> {
 #[inline(always)]
 const fn product(a: i32, b: i32) -> i64 {
     a as i64 * b as i64
+}
+
+/// The number to within 2^-23 and 2^8, without a library's conversion.
+fn rounded(value: i64) -> f32 {
+    (value >> 32) as i32 as f32 * 4_294_967_296.0 + value as u32 as f32
+}
+
+/// The root of a positive number to within 2^-22: that of the half of its digits, and Newton's method.
+fn root(square: f32) -> Option<f32> {
+    (square > 0.0).then(|| {
+        let near = f32::from_bits((square.to_bits() >> 1) + 0x1fbd_1df5);
+        (0..3).fold(near, |root, _| 0.5 * (root + square / root))
+    })
 }
 
 /// The number, or zero if it is negative: a full tank has the same level after any number of ticks.

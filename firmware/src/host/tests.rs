@@ -428,6 +428,35 @@ fn the_level_is_exact() {
     }
 }
 
+/// A refused torque is replaced by the largest that is paid, in any state of the amplifier.
+#[test]
+fn the_largest_torque_that_is_paid() {
+    let (mut random, mut refused) = (Random(11), [0; 2]);
+    for (name, latency, ticks, _) in responses() {
+        let sampling = Sampling { ticks, ..sampling() };
+        for size in [0.001, 0.03, 1.0, 10.0] {
+            let host = HostTorque { energy: size * HOST.energy + 1e-4, ..HOST };
+            let mut tank = tank(&host, &latency, &sampling);
+            for _ in 0..1000 {
+                let wanted = tank.in_range((3.0 * random.next()) as f32);
+                let given = tank.allowed(wanted);
+                if given != wanted {
+                    let (sign, paid) = (wanted.signum(), |tank: &AnyTank, command: i32| {
+                        tank.clone().allowed(command) == command
+                    });
+                    assert!(given * sign >= 0, "{name}: {wanted} {given}");
+                    assert!(given == 0 || paid(&tank, given), "{name}: {wanted} {given}");
+                    assert!(!paid(&tank, given + sign), "{name}: {wanted} {given}");
+                    refused[usize::from(given != 0)] += 1;
+                }
+                tank.give(given);
+                tank.book((40.0 * random.next()) as i32);
+            }
+        }
+    }
+    assert!(refused.iter().all(|count| *count > 100), "{refused:?}");
+}
+
 #[test]
 fn what_is_no_number_counts_as_zero() {
     let mut tank = tank(&HOST, &Latency::NONE, &sampling());
