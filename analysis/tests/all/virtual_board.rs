@@ -155,7 +155,7 @@ fn a_host_and_a_chip_fit_a_bridge_beside_what_opposes_cogging() {
     let (device, rest) = host.split_once("[environment]").unwrap();
     let (_, rest) = rest.split_once("[limits]").unwrap();
     let profile = format!(
-        "{device}[environment]\ntype = \"profile\"\ndelay = 1\ndamping = 0.0002\ndrag = 0.0005\n\
+        "{device}[environment]\ntype = \"profile\"\ndelay = 1\ndamping = 0.0002\n\
          shape = [{{ type = \"detents\", count = 24, torque = 0.02 }}, \
          {{ type = \"end_stops\", from = -1.5, to = 1.5, stiffness = 0.5 }}]\n\
          wall = {{ stiffness = 0.5, damping = 0, delay = 1, face = 1.0, one_sided = true }}\n[limits]{rest}"
