@@ -371,7 +371,7 @@ impl<D: DelayLine<i64>, const LAGS: usize> Tank<D, LAGS> {
         self.numbers.largest
     }
 
-    /// The largest command of the same sign that the level pays, of one that it does not pay, and its cost.
+    /// The largest command of the same sign that the level pays, for a command that it does not pay, and its cost.
     ///
     /// A command of `x` steps costs `x (p x + 2 b)`, or less by up to `x`, and this has a root where it takes all
     /// of the room. Where there is room, floating point and the rounding of costs move the root by `2^-9` of a code
