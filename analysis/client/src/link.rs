@@ -236,8 +236,7 @@ impl Wire {
     /// Sends the waiting bytes; returns the number of received bytes.
     fn exchange(&mut self, until: Instant) -> Result<usize, LinkError> {
         self.flush()?;
-        // No operating system takes a timeout of zero.
-        let left = until.saturating_duration_since(Instant::now()).max(Duration::from_millis(1));
+        let left = until.saturating_duration_since(Instant::now());
         read_within(self.transport.as_mut(), self.bytes.as_mut_slice(), left)
             .map_err(|source| self.lost(source))
     }

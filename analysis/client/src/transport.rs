@@ -3,7 +3,8 @@
 use std::io::{self, Read, Write};
 use std::net::{TcpStream, ToSocketAddrs};
 use std::os::unix::net::UnixStream;
-use std::time::Duration;
+use std::thread;
+use std::time::{Duration, Instant};
 
 use serialport::SerialPort;
 
@@ -12,10 +13,20 @@ use super::Address;
 /// Longest wait for a connection, and for the wire to take bytes.
 const TIMEOUT: Duration = Duration::from_secs(2);
 
+/// A system rounds the timeout of a socket's read up to its own ticks, of up to 10 ms.
+const COARSE: Duration = Duration::from_millis(10);
+
+/// Time between two looks at a socket in a shorter wait.
+const LOOK: Duration = Duration::from_micros(100);
+
 /// A two-way stream of bytes whose reads end after a while, with or without bytes.
 pub trait Transport: Read + Write + Send {
     /// Sets the longest wait of a read.
     fn wait_at_most(&mut self, limit: Duration) -> io::Result<()>;
+    /// Whether its reads and writes wait, if it is a socket; false for others, whose waits are as long as is said.
+    fn set_waiting(&self, _: bool) -> io::Result<bool> {
+        Ok(false)
+    }
 }
 
 impl Transport for Box<dyn SerialPort> {
@@ -28,11 +39,21 @@ impl Transport for TcpStream {
     fn wait_at_most(&mut self, limit: Duration) -> io::Result<()> {
         self.set_read_timeout(Some(limit))
     }
+
+    fn set_waiting(&self, waits: bool) -> io::Result<bool> {
+        self.set_nonblocking(!waits)?;
+        Ok(true)
+    }
 }
 
 impl Transport for UnixStream {
     fn wait_at_most(&mut self, limit: Duration) -> io::Result<()> {
         self.set_read_timeout(Some(limit))
+    }
+
+    fn set_waiting(&self, waits: bool) -> io::Result<bool> {
+        self.set_nonblocking(!waits)?;
+        Ok(true)
     }
 }
 
@@ -80,11 +101,36 @@ pub fn read_within(
     bytes: &mut [u8],
     limit: Duration,
 ) -> io::Result<usize> {
-    transport.wait_at_most(limit)?;
-    match transport.read(bytes) {
+    let read = if limit < COARSE && transport.set_waiting(false)? {
+        let read = look_within(transport, bytes, limit);
+        transport.set_waiting(true)?;
+        read
+    } else {
+        // No operating system takes a timeout of zero.
+        transport.wait_at_most(limit.max(Duration::from_millis(1)))?;
+        transport.read(bytes)
+    };
+    match read {
         Ok(0) => Err(io::ErrorKind::UnexpectedEof.into()),
         Err(error) if is_timeout(&error) => Ok(0),
         read => read,
+    }
+}
+
+/// A read of a socket that does not wait, again and again until it has something.
+fn look_within(
+    transport: &mut dyn Transport,
+    bytes: &mut [u8],
+    limit: Duration,
+) -> io::Result<usize> {
+    let end = Instant::now() + limit;
+    loop {
+        let read = transport.read(bytes);
+        let left = end.saturating_duration_since(Instant::now());
+        if left.is_zero() || !read.as_ref().is_err_and(is_timeout) {
+            return read;
+        }
+        thread::sleep(left.min(LOOK));
     }
 }
 
