@@ -2,10 +2,11 @@
 
 use std::io::{self, Read, Write};
 use std::net::{TcpStream, ToSocketAddrs};
+use std::os::fd::AsFd;
 use std::os::unix::net::UnixStream;
-use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use serialport::SerialPort;
 
 use super::Address;
@@ -13,48 +14,36 @@ use super::Address;
 /// Longest wait for a connection, and for the wire to take bytes.
 const TIMEOUT: Duration = Duration::from_secs(2);
 
-/// A system rounds the timeout of a socket's read up to its own ticks, of up to 10 ms.
-const COARSE: Duration = Duration::from_millis(10);
-
-/// Time between two looks at a socket in a shorter wait.
-const LOOK: Duration = Duration::from_micros(100);
-
 /// A two-way stream of bytes whose reads end after a while, with or without bytes.
 pub trait Transport: Read + Write + Send {
-    /// Sets the longest wait of a read.
-    fn wait_at_most(&mut self, limit: Duration) -> io::Result<()>;
-    /// Whether its reads and writes wait, if it is a socket; false for others, whose waits are as long as is said.
-    fn set_waiting(&self, _: bool) -> io::Result<bool> {
-        Ok(false)
-    }
+    /// Waits for bytes, at most so long: whether a read is due, which may wait for the rest of that time.
+    fn wait_at_most(&mut self, limit: Duration) -> io::Result<bool>;
 }
 
 impl Transport for Box<dyn SerialPort> {
-    fn wait_at_most(&mut self, limit: Duration) -> io::Result<()> {
-        Ok(self.set_timeout(limit)?)
+    fn wait_at_most(&mut self, limit: Duration) -> io::Result<bool> {
+        self.set_timeout(limit.max(Duration::from_millis(1)))?;
+        Ok(true)
     }
 }
 
 impl Transport for TcpStream {
-    fn wait_at_most(&mut self, limit: Duration) -> io::Result<()> {
-        self.set_read_timeout(Some(limit))
-    }
-
-    fn set_waiting(&self, waits: bool) -> io::Result<bool> {
-        self.set_nonblocking(!waits)?;
-        Ok(true)
+    fn wait_at_most(&mut self, limit: Duration) -> io::Result<bool> {
+        has_bytes(self, limit)
     }
 }
 
 impl Transport for UnixStream {
-    fn wait_at_most(&mut self, limit: Duration) -> io::Result<()> {
-        self.set_read_timeout(Some(limit))
+    fn wait_at_most(&mut self, limit: Duration) -> io::Result<bool> {
+        has_bytes(self, limit)
     }
+}
 
-    fn set_waiting(&self, waits: bool) -> io::Result<bool> {
-        self.set_nonblocking(!waits)?;
-        Ok(true)
-    }
+/// Whether a socket has bytes, or its end, within this time. A system rounds the timeout of a socket's read up to its
+/// own ticks, of some ms, and this wait not.
+fn has_bytes(socket: &impl AsFd, limit: Duration) -> io::Result<bool> {
+    let limit = Timespec::try_from(limit).map_err(io::Error::other)?;
+    Ok(poll(&mut [PollFd::new(socket, PollFlags::IN)], Some(&limit))? > 0)
 }
 
 /// Opens an address.
@@ -101,36 +90,13 @@ pub fn read_within(
     bytes: &mut [u8],
     limit: Duration,
 ) -> io::Result<usize> {
-    let read = if limit < COARSE && transport.set_waiting(false)? {
-        let read = look_within(transport, bytes, limit);
-        transport.set_waiting(true)?;
-        read
-    } else {
-        // No operating system takes a timeout of zero.
-        transport.wait_at_most(limit.max(Duration::from_millis(1)))?;
-        transport.read(bytes)
-    };
+    let read = transport.wait_at_most(limit).and_then(|is_due| {
+        if is_due { transport.read(bytes) } else { Err(io::ErrorKind::TimedOut.into()) }
+    });
     match read {
         Ok(0) => Err(io::ErrorKind::UnexpectedEof.into()),
         Err(error) if is_timeout(&error) => Ok(0),
         read => read,
-    }
-}
-
-/// A read of a socket that does not wait, again and again until it has something.
-fn look_within(
-    transport: &mut dyn Transport,
-    bytes: &mut [u8],
-    limit: Duration,
-) -> io::Result<usize> {
-    let end = Instant::now() + limit;
-    loop {
-        let read = transport.read(bytes);
-        let left = end.saturating_duration_since(Instant::now());
-        if left.is_zero() || !read.as_ref().is_err_and(is_timeout) {
-            return read;
-        }
-        thread::sleep(left.min(LOOK));
     }
 }
 
