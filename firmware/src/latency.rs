@@ -168,14 +168,23 @@ impl Latency {
     }
 
     /// Whether a sensor filter stands beside an amplifier that is updated in the period. Then the certificate has a
-    /// continuous lag in place of the updates, and a torque that comes [later](Self::later_than_lag) than it.
+    /// continuous lag in place of the [updates](Self::judged_updates), and a torque that comes
+    /// [later](Self::later_than_lag) than it.
     pub const fn is_filtered_beside_updates(&self) -> bool {
         self.actuator_updates > 0 && !self.sensor_lag.is_zero()
     }
 
-    /// The most in periods by which the torque of an amplifier that is updated in the period comes later than that of
-    /// a continuous lag (theory, section 13.8).
+    /// The updates of the amplifier whose torque the certificate has; 0 for a continuous lag.
+    pub const fn judged_updates(&self) -> u16 {
+        if self.is_filtered_beside_updates() { 0 } else { self.actuator_updates }
+    }
+
+    /// The most in periods by which the torque comes later than that of the [judged](Self::judged_updates) amplifier
+    /// (theory, section 13.8).
     pub const fn later_than_lag(&self, period: f64) -> Interval {
+        if !self.is_filtered_beside_updates() {
+            return Interval::ZERO;
+        }
         let between = Interval::ONE.div(Interval::exact(self.actuator_updates as f64));
         let lag = Interval::decimal(self.actuator_lag.least).div(Interval::decimal(period));
         between.mul(between).div(lag.mul(Interval::exact(8.0))).min(between)
@@ -232,11 +241,7 @@ impl Latency {
             updates => {
                 let late = self.encoder.age.middle() + self.total_jitter();
                 let delay = self.nearest_update(period) as f64 / updates as f64 + late / period;
-                if self.is_filtered_beside_updates() {
-                    delay + self.later_than_lag(period).hi()
-                } else {
-                    delay
-                }
+                delay + self.later_than_lag(period).hi()
             }
         };
         (latest * (1.0 + ROUNDING)) as usize

@@ -90,11 +90,7 @@ impl ResponseWindow {
         if !latency.jitters_twice() && latency.total_jitter() <= latency.output_delay.least {
             early.delay = early.delay.and(Interval::new(0.0, f64::INFINITY));
         }
-        let later = if UPDATES && latency.is_filtered_beside_updates() {
-            latency.later_than_lag(period)
-        } else {
-            Interval::ZERO
-        };
+        let later = if UPDATES { latency.later_than_lag(period) } else { Interval::ZERO };
         late.delay = late.delay.add(jitter).add(later);
         let between_counts = match worst_period {
             Some(worst) if worst != period => {
@@ -216,14 +212,14 @@ impl End {
         delay: f64,
         lags: [f64; 2],
     ) -> Option<Self> {
-        let updates = if UPDATES { latency.actuator_updates } else { 0 };
         let lags = [Interval::decimal(lags[0]).div(t), Interval::decimal(lags[1]).div(t)];
         let weights = some!(weights(lags));
-        let delay = match updates {
-            0 => Interval::decimal(delay).div(t),
-            _ => some!(latency.delay_in_updates(t.midpoint())),
+        let delay = if UPDATES && latency.actuator_updates > 0 {
+            some!(latency.delay_in_updates(t.midpoint()))
+        } else {
+            Interval::decimal(delay).div(t)
         };
-        let updates = if latency.is_filtered_beside_updates() { 0 } else { updates };
+        let updates = if UPDATES { latency.judged_updates() } else { 0 };
         let held_back = match updates {
             0 => lags[0].add(lags[1]),
             _ => SampledLag::of(updates, lags[0]).held(),

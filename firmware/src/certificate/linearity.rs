@@ -14,8 +14,9 @@ pub(super) const fn is_nonlinear(scene: &Scene) -> bool {
 
 /// Whether a scene without a coupling is judged by its index at the port although it is linear: the exact
 /// rule has no proof for missed updates beside latency, and none for jitter, or updates beside a sensor filter, that
-/// cost a spring nothing. For torques and counts that deviate at the same time the exact rule alone has a proof. Of an encoder's age, window,
-/// nonlinearity and dropped readings the index of a spring takes no more than the exact rule does.
+/// cost a spring nothing. For torques and counts that deviate at the same time the exact rule alone has a proof. Of
+/// an encoder's age, window, nonlinearity and dropped readings the index of a spring takes no more than the exact
+/// rule does.
 const fn replaces_exact_rule(scene: &Scene) -> bool {
     let (latency, encoder) = (&scene.latency, scene.latency.encoder);
     if latency.is_none() && encoder.is_ideal() || !matches!(scene.coupling, Coupling::Rigid) {

@@ -413,11 +413,8 @@ const fn oldest(times: &Times<'_>, window: bool, n: &LoopIntervals, end: End) ->
     };
     let response = if window { 0.0 } else { end.time(latency.actuator_response.most, n) };
     let jitter = end.time(latency.total_jitter(), n);
-    let mut sum =
-        Interval::exact(delay).add(Interval::exact(response)).add(Interval::exact(jitter));
-    if latency.is_filtered_beside_updates() {
-        sum = sum.add(latency.later_than_lag(n.period.midpoint()));
-    }
+    let sum = Interval::exact(delay).add(Interval::exact(response)).add(Interval::exact(jitter));
+    let sum = sum.add(latency.later_than_lag(n.period.midpoint()));
     if times.dropped == 0 {
         return Some(end.of(sum));
     }
@@ -446,8 +443,7 @@ impl Tail {
     };
 
     /// The tail of a time constant in s after `part` of a period. Beside jitter the tick may end between two
-    /// updates of a current loop, and `u` is at most that at the update before. Beside a sensor filter the lag is
-    /// continuous.
+    /// updates of a current loop, and `u` is at most that at the update before.
     #[inline(never)]
     const fn of(
         tau: f64,
@@ -462,11 +458,7 @@ impl Tail {
         }
         let tau = Interval::exact(end.time(tau, n));
         let mut over = Interval::ONE.sub(part);
-        let (lag, squared) = match latency.actuator_updates {
-            _ if latency.is_filtered_beside_updates() => {
-                let lag = Decay::of(tau, over);
-                (lag, lag.unspread)
-            }
+        let (lag, squared) = match latency.judged_updates() {
             0 => {
                 let lag = Decay::of(tau, over);
                 (lag, lag.unspread)

@@ -242,7 +242,9 @@ fn straight_lines_are_later_than_the_lag_by_so_much() {
     for _ in 0..200 {
         let updates = rng.random_range(1..=40_u16);
         let lag = log_uniform(&mut rng, 0.01, 20.0);
-        let later = Latency::sampled(updates, lag, 1.0).later_than_lag(1.0);
+        let sensor_lag = TimeRange::exactly(0.1);
+        let latency = Latency { sensor_lag, ..Latency::sampled(updates, lag, 1.0) };
+        let later = latency.later_than_lag(1.0);
         let between = 1.0 / f64::from(updates);
         let left = (-between / lag).exp();
         for step in 1..200 {

@@ -335,17 +335,17 @@ struct PortCurve {
 impl PortCurve {
     /// `None` where two lags are too similar for their difference.
     fn of(scene: &Scene, controller: Transfer) -> Option<Self> {
-        let Latency { actuator_lag, sensor_lag, actuator_updates: updates, .. } = scene.latency;
+        let Latency { actuator_lag, sensor_lag, actuator_updates, .. } = scene.latency;
         let period = Interval::decimal(scene.timing.period);
         let [mut delay, actuator, sensor] =
             [scene.latency.torque_delay(), actuator_lag, sensor_lag]
                 .map(|time| Interval::decimal(time.middle()).div(period));
-        if updates > 0 {
+        if actuator_updates > 0 {
             delay = scene.latency.delay_in_updates(scene.timing.period)?;
         }
         let (lags, between) = ([actuator, sensor], scene.latency.is_between_updates());
-        // Beside a sensor filter the curve is that of a continuous lag.
-        let updates = if scene.latency.is_filtered_beside_updates() { 0 } else { updates };
+        // Beside a sensor filter the curve is that of the continuous lag.
+        let updates = scene.latency.judged_updates();
         let response = LagIntervals { delay, lags, updates, between }.response(0)?;
         Some(Self {
             controller: Response::new(controller),
