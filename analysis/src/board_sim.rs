@@ -88,10 +88,11 @@ fn serve(
     let (mut to_board, mut to_host) = (VecDeque::new(), Vec::new());
     let mut next = Instant::now();
     while !over.load(Ordering::Relaxed) {
+        to_board.extend(listener.receive());
         let bytes: Vec<u8> = to_board.drain(..to_board.len().min(BYTES_PER_SAMPLE)).collect();
         to_host.extend(board.sample(&bytes)?);
         to_host.truncate(WAITING);
-        to_board.extend(listener.carry_bytes(&mut to_host));
+        listener.send(&mut to_host);
         next += period;
         thread::sleep(next.saturating_duration_since(Instant::now()));
     }

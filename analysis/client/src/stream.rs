@@ -75,9 +75,9 @@ struct Counts {
 }
 
 impl Link {
-    /// Sends a torque in N m for the last motion that the board has reported, `rate` times a second, until
-    /// `function` returns none; while no report comes, it sends the last torque again. On the way from one torque
-    /// to the next the board moves along a line if `is_smooth`.
+    /// Sends a torque in N m `rate` times a second. The board reports its motion for each, and `function` makes the
+    /// next torque of it, or ends the stream by none; while no report comes, the last torque is sent again. On the
+    /// way from one torque to the next the board moves along a line if `is_smooth`.
     ///
     /// The stream ends with a torque of zero. If this program stops, the board fades the torque out by itself.
     ///
@@ -127,30 +127,29 @@ fn carry<E: From<StreamError>>(
         next += interval;
         sent = sent.saturating_add(1).min(UNDER_WAY);
         let numbers = (command.number, sent);
-        let state = reported(wire, numbers, next).map_err(StreamError::from)?;
+        // Reports that take longer than an interval come at the rate of the commands: none in some intervals, two in
+        // others.
+        while let Some(state) = report(wire, numbers, next).map_err(StreamError::from)? {
+            heard = Instant::now();
+            let counts = counts.get_or_insert(Counts { units, began: state.tick, count: 0 });
+            let tick = counts.tick(&state);
+            let Some(torque) = function(&tick)? else { return Ok(()) };
+            // Also where it has no value in the format of the wire.
+            if !(torque as f32).is_finite() {
+                return Err(StreamError::Torque { torque, time: tick.time }.into());
+            }
+            command.torque = torque as f32;
+        }
+        if heard.elapsed() >= QUERY.end {
+            let what = "the torque of a stream";
+            return Err(StreamError::from(wire.unanswered(what, QUERY.end)).into());
+        }
         // Late by more than an interval: it goes on from now and does not catch up.
         let now = Instant::now();
         if now > next + interval {
             next = now;
         }
         command.number = command.number.wrapping_add(1);
-        let Some(state) = state else {
-            if heard.elapsed() >= QUERY.end {
-                let what = "the torque of a stream";
-                return Err(StreamError::from(wire.unanswered(what, QUERY.end)).into());
-            }
-            // Reports that take longer than an interval come at the rate of the commands.
-            continue;
-        };
-        heard = Instant::now();
-        let counts = counts.get_or_insert(Counts { units, began: state.tick, count: 0 });
-        let tick = counts.tick(&state);
-        let Some(torque) = function(&tick)? else { return Ok(()) };
-        // Also where it has no value in the format of the wire.
-        if !(torque as f32).is_finite() {
-            return Err(StreamError::Torque { torque, time: tick.time }.into());
-        }
-        command.torque = torque as f32;
     }
 }
 
@@ -159,21 +158,25 @@ fn send(wire: &mut Wire, command: HostCommand) -> Result<(), LinkError> {
     wire.flush()
 }
 
-/// The last report until the next command, if there is one, of a command among so many up to a number.
-fn reported(
+/// The next report until a time, if there is one, of a command among so many up to a number. Once it is late, the
+/// newest: those before are older than a torque can wait for.
+fn report(
     wire: &mut Wire,
     (number, sent): (u16, u16),
-    next: Instant,
+    until: Instant,
 ) -> Result<Option<HostState>, LinkError> {
-    let mut last = None;
-    while let Some(event) = wire.next(next)? {
+    let mut newest = None;
+    while let Some(event) = wire.next(until)? {
         match event {
-            Event::Host(state) if number.wrapping_sub(state.number) < sent => last = Some(state),
+            Event::Host(state) if number.wrapping_sub(state.number) < sent => newest = Some(state),
             Event::Lost(_) => return Err(wire.restarted()),
             _ => {}
         }
+        if newest.is_some() && Instant::now() < until {
+            break;
+        }
     }
-    Ok(last)
+    Ok(newest)
 }
 
 impl Counts {

@@ -202,8 +202,8 @@ fn a_board_of_another_version_is_not_used() {
 }
 
 /// A board that takes torques, and moves by 0.1 rad in each tick of 1 ms that takes a torque. It is gone after
-/// so many, and returns them. It answers each after that number of further ones.
-fn streamed(ticks: usize, late: usize) -> (Link, JoinHandle<Vec<f32>>) {
+/// so many, and returns them. It answers each after that number of further ones, so many at a time.
+fn streamed(ticks: usize, late: usize, at_a_time: usize) -> (Link, JoinHandle<Vec<f32>>) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = Address::Tcp(listener.local_addr().unwrap().to_string());
     let thread = thread::spawn(move || {
@@ -216,11 +216,13 @@ fn streamed(ticks: usize, late: usize) -> (Link, JoinHandle<Vec<f32>>) {
                 break;
             }
             let Some(asked) = decoder.push(byte[0]) else { continue };
-            let late = if matches!(asked, ToBoard::Host(_)) { late } else { 0 };
             waiting.extend(answers(&asked, &mut torques));
-            while waiting.len() > late
-                && let Some(message) = waiting.pop_front()
-            {
+            let answered = match asked {
+                ToBoard::Host(_) if waiting.len() < late + at_a_time => 0,
+                ToBoard::Host(_) => at_a_time,
+                _ => waiting.len(),
+            };
+            for message in waiting.drain(..answered) {
                 let mut buffer = [0; 128];
                 // A client that has left waits for no answer.
                 if stream.write_all(encode(&message, &mut buffer).unwrap()).is_err() {
@@ -280,7 +282,7 @@ fn until_5_ms(torque: f64) -> impl FnMut(&StreamTick) -> Result<Option<f64>, Str
 
 #[test]
 fn a_stream_gets_the_motion_and_ends_at_zero() {
-    let (mut link, board) = streamed(usize::MAX, 0);
+    let (mut link, board) = streamed(usize::MAX, 0, 1);
     let mut ticks = Vec::new();
     let mut torque = until_5_ms(0.25);
     let streamed = link.stream(RATE, true, |tick| {
@@ -297,26 +299,31 @@ fn a_stream_gets_the_motion_and_ends_at_zero() {
     assert_eq!(board.join().unwrap(), [0.0, 0.25, 0.25, 0.25, 0.25, 0.25, 0.0]);
 }
 
-/// As on a serial line, where a command, its tick and its report take more than the period of a stream at 1 kHz.
+/// As on a serial line, where a command, its tick and its report take more than the period of a stream at 1 kHz; and
+/// with a rate that beats with the board's ticks, so that two reports come between two commands, and then none.
 #[test]
 fn a_stream_keeps_its_rate_where_answers_are_late() {
-    let (mut link, board) = streamed(usize::MAX, 3);
-    let mut calls = 0;
-    let streamed = link.stream(100.0, true, |_| {
-        calls += 1;
-        Ok::<_, StreamError>((calls < 20).then_some(0.1))
-    });
-    streamed.unwrap();
-    drop(link);
-    // Waiting for each answer, three further commands late, would take four commands for a call.
-    let commands = board.join().unwrap().len();
-    assert!((calls..2 * calls).contains(&commands), "{commands} commands for {calls} calls");
+    for (late, at_a_time) in [(3, 1), (0, 2), (2, 2)] {
+        let (mut link, board) = streamed(usize::MAX, late, at_a_time);
+        let mut times = Vec::new();
+        let streamed = link.stream(100.0, true, |tick| {
+            times.push(tick.time);
+            Ok::<_, StreamError>((times.len() < 20).then_some(0.1))
+        });
+        streamed.unwrap();
+        drop(link);
+        // Waiting for each answer, three further commands late, would take four commands for a call; the newest of
+        // two answers alone, two.
+        let (commands, calls) = (board.join().unwrap().len(), times.len());
+        assert!((calls..calls + 10).contains(&commands), "{commands} commands for {calls} calls");
+        assert!(times.is_sorted_by(|before, after| before < after), "{times:?}");
+    }
 }
 
 #[test]
 fn a_stream_that_fails_switches_its_torque_off() {
     for wrong in [f64::NAN, f64::INFINITY, 1e300] {
-        let (mut link, board) = streamed(usize::MAX, 0);
+        let (mut link, board) = streamed(usize::MAX, 0, 1);
         let wrong_at_2_ms = |tick: &StreamTick| {
             Ok::<_, StreamError>(Some(if tick.time < 1.5e-3 { 0.1 } else { wrong }))
         };
@@ -329,7 +336,7 @@ fn a_stream_that_fails_switches_its_torque_off() {
 
 #[test]
 fn a_stream_without_a_board_or_a_rate_has_a_reason() {
-    let (mut link, board) = streamed(3, 0);
+    let (mut link, board) = streamed(3, 0, 1);
     let lost = link.stream(1000.0, true, until_5_ms(0.1)).unwrap_err();
     assert!(matches!(lost, StreamError::Link(LinkError::Lost { .. })), "{lost}");
     board.join().unwrap();

@@ -56,24 +56,32 @@ impl Listener {
         Ok((Self { socket, client: None, next: None }, address))
     }
 
-    /// Sends as many bytes as the stream takes, and returns those received.
-    pub fn carry_bytes(&mut self, outgoing: &mut Vec<u8>) -> Vec<u8> {
+    /// The received bytes.
+    pub fn receive(&mut self) -> Vec<u8> {
         self.reject_other_clients();
-        let Some(client) = &mut self.client else {
-            // Without a client bytes are lost, as on a serial line.
-            outgoing.clear();
+        if self.client.is_none() {
             self.client = self.accept();
-            return Vec::new();
-        };
+        }
         let mut bytes = [0; BYTES];
-        let carried = received(client.as_mut(), &mut bytes).map(<[u8]>::to_vec).and_then(|bytes| {
-            outgoing.drain(..send(client.as_mut(), outgoing)?);
-            Ok(bytes)
-        });
-        carried.unwrap_or_else(|_| {
+        self.carry(|client| received(client, &mut bytes).map(<[u8]>::to_vec)).unwrap_or_default()
+    }
+
+    /// Sends as many bytes as the stream takes.
+    pub fn send(&mut self, outgoing: &mut Vec<u8>) {
+        match self.carry(|client| send(client, outgoing)) {
+            Some(sent) => drop(outgoing.drain(..sent)),
+            // Without a client bytes are lost, as on a serial line.
+            None => outgoing.clear(),
+        }
+    }
+
+    /// Carries bytes; none without a client, or if it leaves.
+    fn carry<T>(&mut self, carry: impl FnOnce(&mut dyn Stream) -> io::Result<T>) -> Option<T> {
+        let carried = carry(self.client.as_mut()?.as_mut());
+        if carried.is_err() {
             self.client = None;
-            Vec::new()
-        })
+        }
+        carried.ok()
     }
 
     /// The next client.

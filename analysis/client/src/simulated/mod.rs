@@ -244,6 +244,7 @@ where
     let period = Duration::from_secs_f64(program.scene.timing.period);
     let (mut next, mut outgoing) = (Instant::now(), Vec::new());
     while !over.load(Ordering::Relaxed) {
+        session.receive(&listener.receive());
         // At most half as many ticks as the queue holds frames; then the socket is served.
         for _ in 0..FRAMES / 2 {
             if pacing == Pacing::RealTime && Instant::now() < next {
@@ -252,7 +253,6 @@ where
             next += period;
             servo_loop.run(&mut board, &mut inbox, &mut frames);
         }
-        session.receive(&listener.carry_bytes(&mut outgoing));
         // A client that does not read keeps the rest in the session, which drops ticks.
         if outgoing.is_empty() {
             for _ in 0..FRAMES_AT_A_TIME {
@@ -262,6 +262,7 @@ where
                 session.sent(length);
             }
         }
+        listener.send(&mut outgoing);
         if pacing == Pacing::RealTime {
             thread::sleep(next.saturating_duration_since(Instant::now()).min(POLL_INTERVAL));
         }
