@@ -28,8 +28,6 @@ pub struct BridgeBoard {
     board: VirtualBoard,
     current_loop: CurrentLoop,
     transducers: Transducers,
-    /// Whether it reads a magnetic encoder.
-    is_magnetic: bool,
     sample: Option<Sample>,
     /// The count of each period so far, and whether an alignment moved the handle in it.
     past: Vec<(i32, bool)>,
@@ -48,7 +46,7 @@ impl BridgeBoard {
         let board =
             VirtualBoard::boot(program, board, elf, Some(current_loop.drive()), is_magnetic)?;
         let current_loop = *current_loop;
-        Ok(Self { board, current_loop, transducers, is_magnetic, sample: None, past: Vec::new() })
+        Ok(Self { board, current_loop, transducers, sample: None, past: Vec::new() })
     }
 
     /// Runs to the beginning of the next period of the servo, with bytes to the serial port.
@@ -73,7 +71,7 @@ impl BridgeBoard {
 
     /// The count that the servo reads at the beginning of the period.
     pub fn count(&self) -> i32 {
-        if self.is_magnetic { self.board.count_of_chip() } else { self.board.count() }
+        self.board.read_count()
     }
 
     /// The code that the current loop follows from there on: that of no torque while the gates are off.

@@ -232,10 +232,10 @@ impl VirtualBoard {
         self.count
     }
 
-    /// That position at the update of the modulation before: a chip's transfer begins before an update, and the
-    /// position changes at updates.
-    pub fn count_of_chip(&self) -> i32 {
-        self.before
+    /// The position in counts that the servo reads: with a chip that at the update of the modulation before, as its
+    /// transfer begins before an update, and the position changes at updates.
+    pub fn read_count(&self) -> i32 {
+        if self.rest.is_some() { self.before } else { self.count }
     }
 
     /// Switches it off, and gives its log in a line.

@@ -131,14 +131,14 @@ fn everything(arguments: &Arguments) -> Result<Vec<Figure>, CommandError> {
 
 /// What a host adds to a tick of the same wall at rest.
 fn beside_host(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<(), CommandError> {
-    let measured = |text: &str| {
+    let at_rest = |text: &str| {
         let file = file::parse("wall.toml", Format::Toml, text)?;
         let program = FileProgram::of(&file, "wall.toml", None, None)?;
         let elf = program.build(toolchain, None, NumberFormat::F32)?.path;
         let torque = file.host.map(|host| host.torque as f32);
         Ok::<_, CommandError>(on_target::at_rest(&elf, torque)?)
     };
-    let (with, without) = (measured(&format!("{WALL}{HOST}"))?, measured(WALL)?);
+    let (with, without) = (at_rest(&format!("{WALL}{HOST}"))?, at_rest(WALL)?);
     let (peers, whole) = (without.interrupt_instructions, with.interrupt_instructions);
     let changing = with.changed_instructions.unwrap_or(whole);
     let added = |with: u64, without: u64| with as f64 - without as f64;
