@@ -216,14 +216,15 @@ impl Machine {
     /// The moves of the DMA that are requested.
     fn move_words(&mut self) {
         while let Some(next) = self.core.board_mut().next_move() {
-            let Move { peripheral, memory, from_memory, .. } = next;
+            let Move { peripheral, memory, size, from_memory, .. } = next;
             if from_memory {
-                let word = self.core.memory(memory, 2).and_then(|bytes| bytes.try_into().ok());
-                let word = word.map_or(0, u16::from_le_bytes);
-                self.core.board_mut().write(peripheral, 2, word.into());
+                let mut word = self.core.memory(memory, size).unwrap_or_default();
+                word.resize(4, 0);
+                let word = word.try_into().map_or(0, u32::from_le_bytes);
+                self.core.board_mut().write(peripheral, size, word);
             } else {
-                let word = self.core.board_mut().read(peripheral, 2) as u16;
-                self.core.set_memory(memory, &word.to_le_bytes());
+                let word = self.core.board_mut().read(peripheral, size);
+                self.core.set_memory(memory, &word.to_le_bytes()[..size]);
             }
             self.core.board_mut().advance();
         }

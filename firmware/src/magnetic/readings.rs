@@ -20,7 +20,7 @@ const NONE: u32 = 1 << 31;
 /// Beside it: the last transfer has failed.
 const FAILED: u32 = 1 << 30;
 
-/// The part of a turn to either side of zero in which words of equal bits are angles.
+/// The part of a turn to either side of zero in which words of ones are angles.
 const NEAR: u32 = 256;
 
 impl Readings {
@@ -30,8 +30,8 @@ impl Readings {
     }
 
     /// Takes a transfer, of which so many in a row may fail, as the scene's certificate says; whether it has an angle.
-    /// A failed one is replaced by the angle before. `has_fallen` is asked after a word of zeros beside zero: whether
-    /// the data line has fallen since it was last asked.
+    /// A failed one is replaced by the angle before. `has_fallen` is asked after a word of zeros: whether the data line
+    /// has fallen in its transfer.
     ///
     /// # Errors
     /// If more transfers in a row have failed than are allowed, or if the chip has stopped.
@@ -43,13 +43,13 @@ impl Readings {
         allowed: u16,
         has_fallen: impl FnOnce() -> bool,
     ) -> Result<bool, ReadingError> {
-        // Beside zero, or as the first reading, a word of zeros is an angle, as a handle may rest there. No checksum
-        // tells it from a wire at ground, but the line does: it is pulled up, high while the chip is not selected, and
-        // falls for such a word. A line that nothing drives is as high as a word of ones. So these are an angle only
-        // beside zero, and until the chip counts as frozen.
+        // A word of zeros is an angle, and a handle may rest there. No checksum tells it from a wire at ground, but the
+        // line does: it is pulled up, high while the chip is not selected, and falls for such a word. A line that
+        // nothing drives is as high as a word of ones. So these are an angle only beside zero, and until the chip
+        // counts as frozen.
         let count = match (chip.decode)(frame) {
             Ok(count) => count,
-            Err(ReadingError::Zeros) if self.is_near_zero(chip) && has_fallen() => {
+            Err(ReadingError::Zeros) if has_fallen() => {
                 cold_path();
                 0
             }

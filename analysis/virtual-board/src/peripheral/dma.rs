@@ -1,4 +1,5 @@
-//! DMA1 and its multiplexer (RM0440, 12.6 and 13.6): channels that move halfwords between a unit and the memory.
+//! DMA1 and its multiplexer (RM0440, 12.6 and 13.6): channels that move halfwords or words between a unit and the
+//! memory.
 
 use super::registers::{Registers, Table};
 use super::{Access, Unmodelled, only};
@@ -13,16 +14,18 @@ const COUNT: u32 = 0x04;
 const PERIPHERAL: u32 = 0x08;
 const MEMORY: u32 = 0x0C;
 
-/// CCR: enabled, an interrupt at the end, from the memory, in a circle, the next address of the memory; halfwords;
-/// the priority, which the order of the channels decides here.
+/// CCR: enabled, an interrupt at the end, from the memory, in a circle, the next address of the memory; halfwords or
+/// words, the same for the unit and the memory; the priority, which the order of the channels decides here.
 const ENABLE: u32 = 1;
 const INTERRUPT: u32 = 1 << 1;
 const FROM_MEMORY: u32 = 1 << 4;
 const CIRCLE: u32 = 1 << 5;
 const INCREMENT: u32 = 1 << 7;
+const SIZES: u32 = 0b1111 << 8;
 const HALFWORDS: u32 = 0b0101 << 8;
+const WORDS: u32 = 0b1010 << 8;
 const PRIORITY: u32 = 0b11 << 12;
-const MODELLED: u32 = ENABLE | INTERRUPT | FROM_MEMORY | CIRCLE | INCREMENT | HALFWORDS | PRIORITY;
+const MODELLED: u32 = ENABLE | INTERRUPT | FROM_MEMORY | CIRCLE | INCREMENT | SIZES | PRIORITY;
 
 /// TCIF of each channel in ISR and IFCR.
 const ENDED: [u32; NUMBER] = [1, 5, 9, 13, 17, 21];
@@ -57,7 +60,7 @@ fn requests(control: u32) -> u32 {
     (control >> 19 & 0x1F) + 1
 }
 
-/// A move of a halfword.
+/// A move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Move {
     /// The request that it serves.
@@ -66,6 +69,8 @@ pub struct Move {
     pub peripheral: u32,
     /// The place in the memory.
     pub memory: u32,
+    /// Bytes: 2 or 4.
+    pub size: usize,
     /// Whether the register is written.
     pub from_memory: bool,
 }
@@ -129,12 +134,14 @@ impl Channel {
     /// Its next move.
     fn step(&mut self) -> Move {
         let registers = &self.registers;
+        let size = if registers.get(CONTROL) & SIZES == WORDS { 4 } else { 2 };
         let passed = self.length - self.left;
+        let moved = if registers.has(CONTROL, INCREMENT) { size * passed } else { 0 };
         let next = Move {
             request: self.request(),
             peripheral: registers.get(PERIPHERAL),
-            memory: registers.get(MEMORY)
-                + if registers.has(CONTROL, INCREMENT) { 2 * passed } else { 0 },
+            memory: registers.get(MEMORY) + moved,
+            size: size as usize,
             from_memory: registers.has(CONTROL, FROM_MEMORY),
         };
         self.left -= 1;
@@ -248,6 +255,10 @@ impl Dma {
             return Ok(());
         }
         let (channel, register) = self.channel(offset)?;
+        let sizes = value & SIZES;
+        if register == CONTROL && ![0, HALFWORDS, WORDS].contains(&sizes) {
+            return Err(Unmodelled::Bits(value));
+        }
         // An enabled channel does not change.
         if register != CONTROL && channel.registers.has(CONTROL, ENABLE) {
             return Err(Unmodelled::Register);

@@ -248,8 +248,8 @@ fn failing_readings_give_the_codes_of_a_simulation_s() {
     let armed = bench.armed();
     const SAMPLES: usize = 1500;
     let fails: Vec<_> = Missed::Every(3).ticks().take(SAMPLES).collect();
-    // The chip is selected at the end of the sample that begins now.
-    let first = bench.pins().samples.len() - armed;
+    // The chip is selected at the beginning of the sample that runs next, which has its count already.
+    let first = bench.pins().samples.len() - armed - 1;
     for fail in &fails {
         let chip = bench.board_mut().magnetic.as_mut().unwrap();
         chip.failure = fail.then_some(Failure::Bit(3));
@@ -391,11 +391,11 @@ fn a_device_at_rest_is_no_fault() {
     assert_eq!(bench.fault(), None);
 }
 
-/// Registers of DMA1: those of its channels, which receive, send, begin and end a transfer.
-const CHANNELS: [u32; 4] = [0x4002_0008, 0x4002_001C, 0x4002_0030, 0x4002_0044];
+/// Registers of DMA1: those of its channels, which receive, send, select the chip, begin and end a transfer.
+const CHANNELS: [u32; 5] = [0x4002_0008, 0x4002_001C, 0x4002_0030, 0x4002_0044, 0x4002_0058];
 const RECEIVES: usize = 0;
-const BEGINS: usize = 2;
-const ENDS: usize = 3;
+const BEGINS: usize = 3;
+const ENDS: usize = 4;
 /// The data register of SPI2.
 const DATA: u32 = 0x4000_380C;
 
@@ -470,7 +470,7 @@ fn a_late_tick_reads_the_words_of_one_transfer() {
         .replace("dropped = 1\n", "dropped = 0\n");
     let file = parse("late.toml", Format::Toml, &text).unwrap_or_else(|error| panic!("{error}"));
     let elf = of_file("late", &file);
-    // Also words of zeros, whose fall the first look at the line may take away.
+    // Also words of zeros.
     for (position, turn) in [(INTO, 13), (0, 0)] {
         let mut bench = boot_file(&elf, FixedDevice, position);
         bench.armed();

@@ -1,10 +1,11 @@
 //! A magnetic absolute encoder on SPI, whose transfers hardware begins and ends without a program.
 //!
 //! ```text
-//! the timer's update  ---- DMA 3 writes SPE: selects the chip
+//! the timer's update  ---- DMA 4 takes the fall of the data line away
+//!   its event         ---- DMA 3 writes SPE: selects the chip
 //!   its event         ---- DMA 2 may move as many words to the SPI as a transfer has
 //!                          DMA 1 stores each word received
-//!   its event after the last one ---- DMA 4 writes CR1 until SPE is off: releases the chip
+//!   its event after the last one ---- DMA 5 writes CR1 until SPE is off: releases the chip
 //! DMA1_CHANNEL1       the last word is there: the servo's tick, with the count of the update, or [`take`] by
 //!                     another interrupt that needs the position, as that of a bridge
 //! ```
@@ -87,15 +88,19 @@ pub struct Setup {
 }
 
 const DMA: pac::bdma::Dma = pac::DMA1;
-/// Channels, from zero: stores received words, sends words, begins a transfer, ends it.
+/// Channels, from zero: stores received words, sends words, begins a transfer, takes the fall of the data line away
+/// before that, ends it. The multiplexer has events of the first four.
 const RECEIVE: usize = 0;
 const SEND: usize = 1;
 const BEGIN: usize = 2;
-const END: usize = 3;
+const CLEAR: usize = 3;
+const END: usize = 4;
+/// All, from the one that has nothing to do before the others.
+const CHANNELS: [usize; 5] = [RECEIVE, SEND, END, BEGIN, CLEAR];
 /// The event of a channel among the multiplexer's inputs for synchronisation and for generators.
 const EVENT_OF: u8 = 16;
-/// The generator of requests, and its request.
-const GENERATOR: usize = 0;
+/// The generators of requests of two channels, and the request of the first.
+const GENERATORS: [(usize, usize, u8); 2] = [(RECEIVE, END, ENDING as u8), (CLEAR, BEGIN, 1)];
 const GENERATED: u8 = 1;
 /// Writes of CR1 that end a transfer, of which the last takes SPE away: half a clock after its last bit is sampled the
 /// SPI is busy with it (RM0440, SPI: SPE goes off when BSY is), and each of these writes takes some clocks.
@@ -104,6 +109,9 @@ const ENDING: usize = 8;
 /// Longest time in s in which the pull-up, of at most 55 kΩ, has the released data line high: a wire of 20 cm has less
 /// than 100 pF.
 const RISE: f64 = 1e-5;
+
+/// The line of the detector of edges: that of its pin.
+static FALL: u32 = 1 << BUS.input.pin;
 
 /// What a transfer and its reading use: in one place, so that one address reaches all of it.
 struct Memory {
@@ -162,17 +170,12 @@ fn take_fault() -> Option<Fault> {
     taken
 }
 
-/// Whether the chip's data line has fallen since the last call. It is pulled up, and nothing drives it while the chip is
-/// not selected: so a word of zeros begins with a fall. That stays in the detector of edges, whose interrupt the core
-/// does not enable (RM0440, EXTI).
+/// Whether the chip's data line has fallen since the transfer began. It is pulled up, and nothing drives it while the
+/// chip is not selected: so a word of zeros begins with a fall. That stays in the detector of edges, whose interrupt
+/// the core does not enable (RM0440, EXTI).
 #[inline(always)]
 fn has_fallen() -> bool {
-    let pin = BUS.input.pin;
-    let fell = pac::EXTI.pr(0).read().line(pin);
-    if fell {
-        pac::EXTI.pr(0).write(|w| w.set_line(pin, true));
-    }
-    fell
+    pac::EXTI.pr(0).read().0 & FALL != 0
 }
 
 /// Takes the reading of the transfer that has ended since the last call, for any interrupt. Without such a transfer, or
@@ -238,18 +241,9 @@ fn acknowledge() {
     DMA.ifcr().write(|w| w.set_tcif(RECEIVE, true));
 }
 
-/// Whether the chip's data line is high, as soon as it must have risen after a transfer.
-fn has_risen() -> bool {
-    cortex_m::asm::delay((RISE * TIMER_CLOCK) as u32);
-    let BusPin { port, pin, .. } = BUS.input;
-    port.idr().read().idr(pin) == Idr::HIGH
-}
-
 /// A tick after a missed tick may have begun in the transfer of the next update, with words of two transfers. Waits for
 /// its end, and takes it. If it does not end in its time, or if the words are out of step, the reading is a fault,
 /// however many may fail: the last angle is lost. `elapsed` has the clock's counts since the update.
-///
-/// The first look at the line may have taken the fall of this transfer away, so that here the line has to rise after it.
 #[cold]
 #[inline(never)]
 pub fn take_again(elapsed: impl Fn() -> u32) {
@@ -275,7 +269,7 @@ pub fn take_again(elapsed: impl Fn() -> u32) {
     if !is_in_step {
         restart(chip, &[]);
         fail(ReadingError::Missing);
-    } else if let Err(error) = readings.take(chip, &received(words), setup.dropped, has_risen) {
+    } else if let Err(error) = readings.take(chip, &received(words), setup.dropped, has_fallen) {
         fail(error);
     }
 }
@@ -289,7 +283,8 @@ fn restart(chip: &'static Chip, before: &[Frame]) {
         w.set_rxdmaen(false);
         w.set_txdmaen(false);
     });
-    for number in [RECEIVE, SEND, END, BEGIN] {
+    // The one that begins it all, first: no request of it waits then.
+    for number in CHANNELS.into_iter().rev() {
         DMA.ch(number).cr().modify(|w| w.set_en(false));
     }
     acknowledge();
@@ -334,9 +329,9 @@ pub fn set_up(setup: &'static Setup) {
     });
     // The first may answer the set-up.
     exchange(&chip.command, words);
-    // From here on the line must fall.
-    has_fallen();
     cortex_m::asm::delay((RISE * TIMER_CLOCK) as u32);
+    // From here on the line must fall.
+    pac::EXTI.pr(0).write(|w| w.0 = FALL);
     // A failure here is one of the first tick's, too.
     let mut readings = Readings::none();
     let _ = readings.take(chip, &exchange(&chip.command, words), dropped, has_fallen);
@@ -351,7 +346,7 @@ pub fn set_up(setup: &'static Setup) {
 /// From now on each update of the timer begins a transfer; whether its end is an interrupt.
 pub fn start(interrupts: bool) {
     DMA.ch(RECEIVE).cr().modify(|w| w.set_tcie(interrupts));
-    for number in [RECEIVE, SEND, END, BEGIN] {
+    for number in CHANNELS {
         DMA.ch(number).cr().modify(|w| w.set_en(true));
     }
     BUS.spi.cr2().modify(|w| {
@@ -424,9 +419,16 @@ fn connect_channels(chip: &'static Chip) {
     let words = chip.interface.words;
     let (control, data) = (BUS.spi.cr1().as_ptr() as u32, BUS.spi.dr16().as_ptr() as u32);
     let [frame, ends] = [MEMORY.frame.as_ptr() as u32, MEMORY.ends.as_ptr() as u32];
+    let (pending, fall) = (pac::EXTI.pr(0).as_ptr() as u32, &raw const FALL as u32);
     channel(RECEIVE, Dir::FROM_PERIPHERAL, data, frame, words);
     channel(SEND, Dir::FROM_MEMORY, data, chip.command.as_ptr() as u32, words);
     channel(BEGIN, Dir::FROM_MEMORY, control, MEMORY.begins.as_ptr() as u32, 1);
+    channel(CLEAR, Dir::FROM_MEMORY, pending, fall, 1);
+    // The registers of the detector take whole words only (RM0440, EXTI).
+    DMA.ch(CLEAR).cr().modify(|w| {
+        w.set_msize(Size::BITS32);
+        w.set_psize(Size::BITS32);
+    });
     channel(END, Dir::FROM_MEMORY, control, ends, ENDING);
     let of_transfer = words as u8 - 1;
     request(RECEIVE, BUS.received, of_transfer, |w| w.set_ege(true));
@@ -435,15 +437,17 @@ fn connect_channels(chip: &'static Chip) {
         w.set_spol(Pol::RISING_EDGE);
         w.set_se(true);
     });
-    request(BEGIN, BUS.begins, 0, |w| w.set_ege(true));
-    request(END, GENERATED, 0, |_| {});
-    let generator = pac::DMAMUX1.rgcr(GENERATOR);
-    generator.write(|w| {
-        w.set_sig_id(EVENT_OF + RECEIVE as u8);
-        w.set_gpol(Pol::RISING_EDGE);
-        w.set_gnbreq(ENDING as u8 - 1);
-    });
-    generator.modify(|w| w.set_ge(true));
+    request(CLEAR, BUS.begins, 0, |w| w.set_ege(true));
+    for (number, (from, to, requests)) in GENERATORS.into_iter().enumerate() {
+        let generator = pac::DMAMUX1.rgcr(number);
+        generator.write(|w| {
+            w.set_sig_id(EVENT_OF + from as u8);
+            w.set_gpol(Pol::RISING_EDGE);
+            w.set_gnbreq(requests - 1);
+        });
+        generator.modify(|w| w.set_ge(true));
+        request(to, GENERATED + number as u8, 0, |w| w.set_ege(to == BEGIN));
+    }
 }
 
 /// A channel that moves halfwords in a circle.
