@@ -57,15 +57,14 @@ fn checksum(content: u32) -> u32 {
 #[inline(always)]
 fn decode(&[_, first, second]: &Frame) -> Result<u32, ReadingError> {
     let bits = u32::from(first) << 16 | u32::from(second);
-    match bits {
+    if bits == 0 {
         // The checksum of zeros is zero.
-        0 => return Err(ReadingError::Zeros),
-        u32::MAX => return Err(ReadingError::Ones),
-        _ => {}
+        return Err(ReadingError::Zeros);
     }
     let content = bits >> 8;
     if checksum(content) != bits & 0xFF {
-        return Err(ReadingError::Checksum);
+        // The checksum of ones is none.
+        return Err(if bits == u32::MAX { ReadingError::Ones } else { ReadingError::Checksum });
     }
     match content & 0b111 {
         0 => Ok(content >> 3),

@@ -7,18 +7,20 @@ use super::{Chip, Frame, ReadingError};
 /// The last angle, and what has come since.
 #[derive(Clone, Debug)]
 pub struct Readings {
-    /// The last angle in counts, with [`FAILED`] or [`NONE`].
+    /// The last angle in counts, with [`FAILED`], [`EQUAL`] or [`NONE`].
     count: u32,
     /// Failed transfers in a row, if the angle says that one has failed: so a good one has nothing to reset.
     failed: u16,
-    /// Equal angles in a row.
+    /// Equal angles in a row, if the angle says that the last one was as that before, for the same reason.
     equal: u16,
 }
 
-/// Beside the last angle: there was none yet. No chip has as many bits, and in a turn of any chip it is zero.
-const NONE: u32 = 1 << 31;
-/// Beside it: the last transfer has failed.
-const FAILED: u32 = 1 << 30;
+/// Beside the last angle: the last transfer has failed. No chip has as many bits.
+const FAILED: u32 = 1 << 31;
+/// Beside it: it was as the one before.
+const EQUAL: u32 = 1 << 30;
+/// In its place: there was none yet. In a turn of any chip that is zero.
+const NONE: u32 = 1 << 29;
 
 /// The part of a turn to either side of zero in which words of ones are angles.
 const NEAR: u32 = 256;
@@ -62,17 +64,18 @@ impl Readings {
                 chip.width.mask()
             }
         };
-        if let Some(most) = chip.frozen_after {
-            if count == self.count & !FAILED {
-                self.equal = self.equal.saturating_add(1);
-                if self.equal >= most {
-                    return Err(ReadingError::Frozen);
-                }
-            } else {
-                self.equal = 0;
+        let mut told = count;
+        if let Some(most) = chip.frozen_after
+            && (count ^ self.count) & !(FAILED | EQUAL) == 0
+        {
+            cold_path();
+            self.equal = if self.count & EQUAL == 0 { 1 } else { self.equal.saturating_add(1) };
+            if self.equal >= most {
+                return Err(ReadingError::Frozen);
             }
+            told |= EQUAL;
         }
-        self.count = count;
+        self.count = told;
         Ok(true)
     }
 

@@ -95,7 +95,7 @@ const SEND: usize = 1;
 const BEGIN: usize = 2;
 const CLEAR: usize = 3;
 const END: usize = 4;
-/// All, from the one that has nothing to do before the others.
+/// All; each has nothing to do before those behind it begin.
 const CHANNELS: [usize; 5] = [RECEIVE, SEND, END, BEGIN, CLEAR];
 /// The event of a channel among the multiplexer's inputs for synchronisation and for generators.
 const EVENT_OF: u8 = 16;
@@ -283,7 +283,7 @@ fn restart(chip: &'static Chip, before: &[Frame]) {
         w.set_rxdmaen(false);
         w.set_txdmaen(false);
     });
-    // The one that begins it all, first: no request of it waits then.
+    // From the last to the first: so no request of one waits for another.
     for number in CHANNELS.into_iter().rev() {
         DMA.ch(number).cr().modify(|w| w.set_en(false));
     }
