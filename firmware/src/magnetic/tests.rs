@@ -114,7 +114,7 @@ fn a_transfer_before_an_update_adds_to_the_age() {
     }
 }
 
-/// A handle may rest where all bits are equal. A line at ground does not fall; one that nothing drives is told elsewhere.
+/// A handle may rest where all bits are equal. A line at ground does not fall, and an open line is told elsewhere.
 #[test]
 fn a_word_of_equal_bits_may_be_an_angle() {
     let takes = |chip: &Chip, first: &[u16], word: u16, has_fallen| {
