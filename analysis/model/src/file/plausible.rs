@@ -41,8 +41,13 @@ fn step(file: &SceneFile) -> Option<String> {
         true => (TAU / step, "counts a turn"),
         false => (step.to_radians(), "degrees"),
     };
-    let why = format!("gives the encoder {} counts a turn", significant(TAU / step, 2));
-    Some(doubt(&key::ENCODER_STEP, step, &why, meant, of))
+    // A file may state its counts in place of this key.
+    let [counts, step, meant] =
+        [(TAU / step, 2), (step, 6), (meant, 3)].map(|(it, to)| significant(it, to));
+    let Key { path, unit, .. } = key::ENCODER_STEP;
+    Some(format!(
+        "the encoder has {counts} counts a turn, {step} {unit} each: did you mean `{path}` = {meant}, of {step} {of}?"
+    ))
 }
 
 fn period(file: &SceneFile) -> Option<String> {
@@ -132,8 +137,11 @@ mod tests {
             warning.clone()
         };
         for (warning, parts) in [
-            (changed(|file| file.encoder_step = Some(4096.0)), ["4096 rad", "mean 0.00153,"]),
-            (changed(|file| file.encoder_step = Some(0.36)), ["17 counts", "mean 0.00628,"]),
+            (
+                changed(|file| file.encoder_step = Some(4096.0)),
+                ["4096 rad", "`limits.encoder_step` = 0.00153,"],
+            ),
+            (changed(|file| file.encoder_step = Some(0.36)), ["17 counts", "= 0.00628,"]),
             (changed(|file| file.friction = Some(49_200.0)), ["49200 N m", "mN m"]),
             (
                 changed(|file| file.cogging = Some(sine(5000.0, 84.0))),

@@ -11,7 +11,7 @@ use haptic_servo::number::Format;
 use haptic_servo::scene::{Coupling, Scene};
 use serde::Serialize;
 
-use crate::chart::{self, Data, has_extension};
+use crate::chart::{self, Data, Picture, has_extension};
 use crate::command::shared_arguments::{JsonOption, warned};
 use crate::command::status::{CommandError, CommandStatus};
 use crate::command::value_parsers::positive;
@@ -78,6 +78,9 @@ struct Report {
 
 /// Runs the command; the status is negative if no wall certifies.
 pub fn run(arguments: &Arguments, answer: &JsonOption) -> Result<CommandStatus, CommandError> {
+    if let Some(output) = arguments.output.as_deref().filter(|path| !has_extension(path, "csv")) {
+        Picture::check_name(output)?;
+    }
     let file = with_wall(load(arguments)?);
     let Some(search) = Search::new(&file, &TERMS) else {
         return Err(CommandError::NoSuchQuantity { scene: file.name, quantity: "wall" });

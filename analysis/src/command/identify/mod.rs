@@ -51,11 +51,11 @@ pub struct Arguments {
     pub record: Option<PathBuf>,
     /// The record is of slow whole turns in both directions at three speeds or more, and shows friction and
     /// cogging. With --port the board runs the program `turns`, with --target it is simulated
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["settle", "longest_lag"])]
     pub turns: bool,
     /// The record is of whole turns with two encoders on the shaft, in the columns `counts` and `reference`, and
     /// shows the nonlinearity and the age of the first: counts of the second per turn
-    #[arg(long, value_name = "N", value_parser = positive, conflicts_with_all = ["turns", "measured"],
+    #[arg(long, value_name = "N", value_parser = positive, conflicts_with_all = ["turns", "measured", "settle", "longest_lag"],
           requires = "file", allow_negative_numbers = true)]
     pub reference_per_rev: Option<f64>,
     #[command(flatten)]
