@@ -2,8 +2,9 @@
 
 use haptic_servo::latency::Latency;
 use haptic_servo::output_timing::{OutputTiming, READ_WITHIN};
-use haptic_servo::scene::{Coupling, Scene, TimeRange};
-use rand::Rng;
+use haptic_servo::scene::{Coupling, EncoderReading, Scene, TimeRange};
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use tests::scenes::log_uniform;
 
 /// What runs a scene's servo.
@@ -159,6 +160,34 @@ pub fn plain(rng: &mut impl Rng, period: f64) -> Latency {
     // Without a delay the torques of a late environment may be early, too.
     let most = if delay == 0.0 { period } else { delay };
     jittering(rng, Latency::delayed(delay), period, most.min(0.95 * period))
+}
+
+/// The same with the readings of an encoder, in every third scene. Its own numbers decide, so that the other scenes are
+/// what they are without it.
+pub fn read(latency: Latency, period: f64) -> Latency {
+    let rng = &mut ChaCha8Rng::seed_from_u64(period.to_bits());
+    if !rng.random_bool(0.33) {
+        return latency;
+    }
+    let mut reading = EncoderReading::IDEAL;
+    if rng.random_bool(0.5) {
+        let least = if rng.random_bool(0.5) { 0.0 } else { rng.random_range(0.0..1.5) };
+        let most = least + if rng.random_bool(0.5) { log_uniform(rng, 1e-3, 0.3) } else { 0.0 };
+        reading.age = TimeRange::between(least * period, most * period);
+    }
+    // The filter of an encoder is behind its error, and the simulated one before.
+    if latency.sensor_lag.is_zero() && rng.random_bool(0.7) {
+        reading.linearity = log_uniform(rng, 0.01, 0.4);
+    }
+    if rng.random_bool(0.2) {
+        reading.dropped = rng.random_range(1..=2);
+    }
+    latency.read_by(kept(reading))
+}
+
+/// For as long as the program runs, as a scene wants it.
+pub fn kept(reading: EncoderReading) -> &'static EncoderReading {
+    Box::leak(Box::new(reading))
 }
 
 fn any(rng: &mut impl Rng, period: f64) -> Latency {

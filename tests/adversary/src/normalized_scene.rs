@@ -77,6 +77,10 @@ pub struct NormalizedScene {
     pub sets: usize,
     /// Part of a period within which counts are read that are in time.
     pub in_time: f64,
+    /// Largest slope of the encoder's error over the angle.
+    pub linearity: f64,
+    /// Readings in a row that may be dropped, each of which is then the one before.
+    pub dropped: u16,
 }
 
 /// Damping in N m s/rad that a device may lose, everything else as it runs, before the certificate
@@ -211,6 +215,8 @@ impl NormalizedScene {
             },
             injection: drawn.rendering.injection.unwrap_or(0.0),
             sets,
+            linearity: latency.encoder.linearity,
+            dropped: latency.encoder.dropped,
         })
     }
 

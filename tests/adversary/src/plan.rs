@@ -1,7 +1,7 @@
 //! The plan of a run: the hand and where it starts, the timing of the ticks, and the requests to the
 //! servo.
 
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 use rand::Rng;
 use tests::hands::{Hand, Segment};
@@ -172,6 +172,35 @@ impl Jitter {
     }
 }
 
+/// The readings of an encoder.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Readings {
+    /// Waves of its error in a turn, and in rad the amplitude and the phase of that.
+    pub waves: [f64; 3],
+    /// The readings that are dropped: where this is above zero.
+    pub dropped: Option<Signs>,
+}
+
+impl Readings {
+    fn draw(rng: &mut impl Rng, normalized: &NormalizedScene) -> Self {
+        let mut readings = Self::default();
+        if normalized.linearity > 0.0 {
+            let count = f64::from([1, 1, 2, 7, 50, 400][rng.random_range(0..6)]);
+            readings.waves = [count, normalized.linearity / count, rng.random_range(0.0..TAU)];
+        }
+        if normalized.dropped > 0 && rng.random_bool(0.8) {
+            readings.dropped = Some(Signs::draw(rng));
+        }
+        readings
+    }
+
+    /// The angle that it reads from an angle, in rad.
+    pub fn of(&self, angle: f64) -> f64 {
+        let [count, amplitude, phase] = self.waves;
+        angle + amplitude * (count * angle + phase).sin()
+    }
+}
+
 /// A request to the servo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Request {
@@ -204,6 +233,8 @@ pub struct Plan {
     pub delay: f64,
     /// The times that deviate.
     pub jitter: Jitter,
+    /// The readings of the encoder.
+    pub readings: Readings,
     /// Where in their ranges the delay and the lags are, from 0 to 1.
     pub within: [f64; 2],
     /// The request and its period.
@@ -263,6 +294,7 @@ impl Plan {
             pattern: Pattern::draw(rng, most, normalized),
             delay: Self::delay(rng, normalized),
             jitter: Jitter::draw(rng, &normalized.timing),
+            readings: Readings::draw(rng, normalized),
             within: [Self::place_in_range(rng), Self::place_in_range(rng)],
             requests: [None; REQUESTS],
             heats: rng.random_bool(0.3),
@@ -412,6 +444,7 @@ impl Plan {
             plan.pattern = Pattern::draw(rng, normalized.tolerated, normalized);
             plan.delay = Self::delay(rng, normalized);
             plan.jitter = Jitter::draw(rng, &normalized.timing);
+            plan.readings = Readings::draw(rng, normalized);
             plan.within = [Self::place_in_range(rng), Self::place_in_range(rng)];
             plan.separate(normalized);
         }

@@ -11,10 +11,10 @@ use haptic_servo::environment::{Environment, Parts};
 use haptic_servo::latency::{Latency, TimeRange};
 use haptic_servo::number::Format;
 use haptic_servo::output_timing::READ_WITHIN;
-use haptic_servo::scene::{Coupling, Device, Scene};
+use haptic_servo::scene::{Coupling, Device, EncoderReading, Scene};
 use nalgebra::Complex;
 
-use crate::mode::Actual;
+use crate::mode::{Actual, kept};
 use crate::periodic_motion::at;
 
 /// A wrong rule.
@@ -45,11 +45,17 @@ pub enum Planted {
     RigidBeyondLimit,
     /// Missed updates cost nothing.
     MissedUpdates,
+    /// An encoder is as linear as a ruler.
+    Linear,
+    /// An encoder's readings are of now.
+    Ageless,
+    /// All readings come.
+    NoneDropped,
 }
 
 impl Planted {
     /// All of them.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 15] = [
         Self::MatchedJitter,
         Self::SpringJitter,
         Self::LinearJitter,
@@ -62,6 +68,9 @@ impl Planted {
         Self::Unordered,
         Self::RigidBeyondLimit,
         Self::MissedUpdates,
+        Self::Linear,
+        Self::Ageless,
+        Self::NoneDropped,
     ];
 
     /// What the rule takes a scene for.
@@ -85,6 +94,21 @@ impl Planted {
                 scene,
                 timing.worst_period.map_or(1.0, |worst| worst / timing.period),
             ),
+            Self::Linear => {
+                with(read_by(latency, EncoderReading { linearity: 0.0, ..*latency.encoder }))
+            }
+            Self::NoneDropped => {
+                with(read_by(latency, EncoderReading { dropped: 0, ..*latency.encoder }))
+            }
+            Self::Ageless => {
+                let age = latency.encoder.age.middle();
+                let TimeRange { least, most } = latency.output_delay;
+                let output_delay = TimeRange::between(least - age, most - age);
+                let deviation = latency.encoder.deviation_of_age();
+                let count_jitter = (latency.count_jitter - deviation).max(0.0);
+                let ideal = EncoderReading { age: TimeRange::ZERO, ..*latency.encoder };
+                with(read_by(Latency { output_delay, count_jitter, ..latency }, ideal))
+            }
             _ => *scene,
         }
     }
@@ -101,6 +125,14 @@ impl Planted {
             unreported: self == Self::StaleCode,
             unordered: self == Self::Unordered && overtake,
         }
+    }
+}
+
+/// With other readings of the same age.
+fn read_by(latency: Latency, reading: EncoderReading) -> Latency {
+    Latency {
+        encoder: if reading == *latency.encoder { latency.encoder } else { kept(reading) },
+        ..latency
     }
 }
 

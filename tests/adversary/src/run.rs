@@ -142,9 +142,13 @@ impl EnergyBalance {
     }
 
     fn allowed(&self, normalized: &NormalizedScene) -> f64 {
-        let NormalizedScene { bound, compliance, face, stored, sides, .. } = *normalized;
-        let opening = bound * (sides * self.farthest + face + compliance * bound);
-        f64::from(self.openings) * opening + stored + self.errors(normalized) + self.stops
+        let NormalizedScene { bound, compliance, face, stored, sides, linearity, .. } = *normalized;
+        // An encoder whose error has this slope is off by at most as much, in rad, and where it reads a rad there are
+        // as many more.
+        let farthest = self.farthest + 2.0 * linearity;
+        let opening = bound * (sides * farthest + face + compliance * bound);
+        let energies = f64::from(self.openings) * opening + stored + self.errors(normalized);
+        energies / (1.0 - linearity) + self.stops
     }
 }
 
@@ -256,6 +260,8 @@ struct Run<'a> {
     x: State,
     balance: EnergyBalance,
     outcome: Outcome,
+    /// Readings dropped in a row.
+    dropped: u16,
     /// Ticks skipped, ticks without a code in time, periods since the last code.
     skipped: u32,
     in_a_row: u32,
@@ -270,7 +276,7 @@ impl<'a> Run<'a> {
     fn new(normalized: &'a NormalizedScene, plan: &'a Plan, schedule: &'a Schedule) -> Self {
         let mut board = Board::new(normalized.counts_per_radian, !plan.armed_by_boot);
         // As booting does it, with the device at the board's zero.
-        board.angle = plan.zero;
+        board.angle = plan.readings.of(plan.zero);
         board.zero_encoder();
         if plan.heats {
             board = board.heating();
@@ -291,6 +297,7 @@ impl<'a> Run<'a> {
             x,
             balance: EnergyBalance::default(),
             outcome: Outcome { score: -1.0, start, rate: -1.0, ..Outcome::default() },
+            dropped: 0,
             skipped: 0,
             in_a_row: 0,
             since: 0,
@@ -330,7 +337,7 @@ impl<'a> Run<'a> {
         control: &mut Control<N, M>,
         inbox: &mut Inbox<'_, PreparedServo<Environment, N, M>>,
         requests: &mut Requests<'_, PreparedServo<Environment, N, M>>,
-        (period, timing, shift): (u32, TickTiming, i8),
+        (period, timing, shift, drop): (u32, TickTiming, i8, bool),
     ) -> Option<bool>
     where
         Environment: Tunable<N> + SupportsTiming<M>,
@@ -338,7 +345,11 @@ impl<'a> Run<'a> {
         let normalized = self.normalized;
         let is_late = timing == TickTiming::Late;
         let delayed = timing == TickTiming::Delayed && self.plan.delay > normalized.in_time;
-        self.board.angle = if self.schedule.lags.sensor > 0.0 { self.x[SENSED] } else { self.x[0] };
+        self.dropped = if drop && self.dropped < normalized.dropped { self.dropped + 1 } else { 0 };
+        if self.dropped == 0 {
+            let filtered = self.schedule.lags.sensor > 0.0;
+            self.board.angle = self.plan.readings.of(self.x[if filtered { SENSED } else { 0 }]);
+        }
         self.board.passed = self.skipped + 1;
         self.board.late = is_late && !normalized.unreported;
         self.board.delay = if delayed { timer_counts(self.plan.delay) } else { 0 };
@@ -486,12 +497,12 @@ where
         }
         let window = (plan.periods / 4).max(LOOK);
         let mut rate = Rate { window, before: EnergyBalance::default(), last: -1.0 };
+        let dropped = shifts(plan.readings.dropped.clone()).map(|sign| sign > 0);
         let shifts = shifts(plan.jitter.torques.clone()).zip(shifts(plan.jitter.counts.clone()));
         let (mut overdue, mut target) = (None, 0.0);
         let mut next_request = plan.next_request(0);
-        for (period, (tick, (shift, count))) in
-            (0..plan.periods).zip(ticks(plan.pattern.clone()).zip(shifts))
-        {
+        let ticks = ticks(plan.pattern.clone()).zip(shifts).zip(dropped);
+        for (period, ((tick, (shift, count)), drop)) in (0..plan.periods).zip(ticks) {
             if let Some(on) = overdue.take() {
                 run.motor.powered = on;
             }
@@ -513,7 +524,7 @@ where
             }
             for (place, step) in schedule.steps.iter().enumerate() {
                 if place == at {
-                    let timed = (period, tick, shift);
+                    let timed = (period, tick, shift, drop);
                     overdue = run.tick(&mut control, &mut inbox, &mut requests, timed);
                 }
                 run.motor.take(period, place, normalized.unordered);

@@ -13,7 +13,7 @@ use haptic_servo::servo::{Latched, RenderingOptions, Transducers};
 use rand::Rng;
 use tests::scenes::{log_uniform, multiply, polynomial};
 
-use crate::mode::{Actual, draw_latency, has_latency, plain};
+use crate::mode::{Actual, draw_latency, has_latency, plain, read};
 use crate::planted::Planted;
 use crate::profiles;
 
@@ -343,8 +343,8 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
         coupling,
         environment: Parts::NONE.sum(),
         latency: match lags {
-            true if kind == Kind::Sharp && mode == Mode::Bare => plain(rng, period),
-            true => draw_latency(rng, mode, period),
+            true if kind == Kind::Sharp && mode == Mode::Bare => read(plain(rng, period), period),
+            true => read(draw_latency(rng, mode, period), period),
             false => Latency::NONE,
         },
         torque_limit: limited.then(|| full_scale * log_uniform(rng, 0.15, 0.999)),

@@ -29,6 +29,8 @@ pub struct LoopTiming {
     pub updates: u16,
     /// Time constant of the filter between encoder and servo.
     pub sensor: TimeRange,
+    /// The middle age of a reading, a part of the delay.
+    pub age: f64,
 }
 
 impl LoopTiming {
@@ -52,6 +54,7 @@ impl LoopTiming {
             amplifier: in_periods(latency.actuator_lag),
             updates: latency.actuator_updates,
             sensor: in_periods(latency.sensor_lag),
+            age: latency.encoder.age.middle() / scene.timing.period,
         }
     }
 
@@ -107,8 +110,9 @@ impl Schedule {
         let torques = torques.map(|shift| start + delay + shift);
         // As the timer of the board counts.
         let late = if plan.pattern.delays() { start + plan.delay } else { start };
-        let updates: Vec<f64> =
-            (0..timing.updates).map(|i| start + f64::from(i) / f64::from(timing.updates)).collect();
+        // A tick is so much later than the position that it reads.
+        let update = |i| start + timing.age + f64::from(i) / f64::from(timing.updates);
+        let updates: Vec<f64> = (0..timing.updates).map(update).collect();
         let mut all = vec![0.0];
         for at in counts.iter().chain(&torques).chain([&late]).chain(&updates) {
             let part = part(*at);
