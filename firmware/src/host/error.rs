@@ -33,8 +33,9 @@ sentences! {
     Steps { damping: f64, least: f64, most: f64 } => (
         "the host's share of damping is " {damping} " N m s/rad, and must be at least " {least} " N m s/rad and \
          below " {most} " N m s/rad, so that the tank can count the motion with this encoder, motor and period"),
-    Timeout { timeout: f64, least: f64 } => (
-        "the host's timeout is " {timeout} " s, and must be at least two periods, which are " {least} " s"),
+    Timeout { timeout: f64, least: f64, most: f64 } => (
+        "the host's timeout is " {timeout} " s, and must be at least two periods, which are " {least} " s, and at \
+         most " {most} " s, as long as the servo counts"),
     Stores => (
         "a hand that works against a host's torque returns energy to the supply of the bridge for as long as it \
          does so, and this supply takes none back: take a supply that sinks, such as one with a brake resistor"),

@@ -20,6 +20,7 @@
 //!
 //! The parts of the share are chosen to make the coefficient of `h^2` least.
 
+use super::stream::LONGEST_RAMP;
 use super::{HostError, HostTimes, HostTorque, ServoNumbers, TankNumbers};
 use crate::dac::DacCode;
 use crate::latency::Latency;
@@ -111,8 +112,9 @@ impl HostResponse {
         ok!(host.check());
         ok!(covered(latency, sampling));
         let period = sampling.period;
-        if host.timeout < 2.0 * period {
-            return Err(HostError::Timeout { timeout: host.timeout, least: 2.0 * period });
+        let (least, most) = (2.0 * period, 2.0 * LONGEST_RAMP as f64 * period);
+        if host.timeout < least || host.timeout > most {
+            return Err(HostError::Timeout { timeout: host.timeout, least, most });
         }
         let delay = in_periods(latency, period);
         let whole = delay.midpoint() as usize;

@@ -3,8 +3,8 @@
 use super::HostTorque;
 use super::tank::STEP_BITS;
 
-/// Longest ramp in ticks.
-const LONGEST_RAMP: u32 = 10_000;
+/// Longest ramp in ticks: half of the longest timeout.
+pub(super) const LONGEST_RAMP: u32 = 10_000;
 
 /// What a ramp does at its end.
 #[derive(Clone, Copy, Debug, PartialEq)]

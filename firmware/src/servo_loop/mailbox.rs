@@ -119,7 +119,7 @@ pub struct Requests<'a, R: Exchanged> {
 
 impl<R: Exchanged> Requests<'_, R> {
     /// The words of a host.
-    pub(crate) const fn host(&self) -> &R::Channel {
+    pub const fn host(&self) -> &R::Channel {
         self.host
     }
 

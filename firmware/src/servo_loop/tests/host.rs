@@ -384,6 +384,7 @@ fn a_share_and_a_scene_that_leaves_less_are_refused() {
         (HOST, 36.0, "below the margin of"),
         (greedy, 10.0, "below the margin of"),
         (timeless, 10.0, "two periods"),
+        (HostTorque { timeout: 20.001, ..HOST }, 10.0, "at most 20 s"),
         (poor, 10.0, "must be above"),
         (HostTorque { torque: 1.5, ..HOST }, 10.0, "full scale"),
         (HostTorque { power: f64::NAN, ..HOST }, 10.0, "power"),
