@@ -28,7 +28,7 @@ use embassy_stm32::pac;
 use embassy_stm32::pac::bdma::vals::{Dir, Pl, Size};
 use embassy_stm32::pac::dmamux::regs::Ccr;
 use embassy_stm32::pac::dmamux::vals::Pol;
-use embassy_stm32::pac::gpio::vals::{Idr, Moder, Ospeedr, Pupdr};
+use embassy_stm32::pac::gpio::vals::{Moder, Ospeedr, Pupdr};
 use embassy_stm32::pac::spi::regs::Cr1;
 use embassy_stm32::pac::spi::vals::{Br, Cpha, Cpol, Ds, Mstr};
 
