@@ -52,13 +52,13 @@ pub(super) const fn is_delay_alone(latency: &Latency) -> bool {
         && latency.actuator_updates == 0
 }
 
-/// Whether a nonlinear encoder reads the device behind whose coupling spring a static and undelayed
-/// environment is: the whole controller is then a static law (theory, section 18.3).
+/// Whether a nonlinear encoder reads the device behind whose coupling spring a static environment is, of which no part
+/// is late: the whole controller is then a static law (theory, section 18.3).
 pub(super) const fn is_behind_spring(scene: &Scene) -> bool {
     matches!(scene.coupling, Coupling::Spring { .. })
         && scene.latency.encoder.linearity != 0.0
         && is_nonlinear(scene)
-        && !scene.environment.is_late()
+        && scene.environment.parts().longest_delay() == 0
         && is_static(&scene.environment)
 }
 

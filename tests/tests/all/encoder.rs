@@ -5,8 +5,8 @@
 use std::f64::consts::{PI, TAU};
 
 use haptic_servo::certificate::assess;
-use haptic_servo::environment::Wall;
-use haptic_servo::scene::{Device, EncoderReading, Latency, Scene, TimeRange};
+use haptic_servo::environment::{Knots, Parts, Profile, Shape, Wall};
+use haptic_servo::scene::{Coupling, Device, EncoderReading, Latency, Scene, TimeRange};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -200,4 +200,25 @@ fn the_mean_torque_of_an_endless_profile_is_within_its_bound() {
         largest = largest.max(mean / bound);
     }
     assert!(largest > 0.1, "{largest}");
+}
+
+static KNOB: Knots<64> = Knots::of(&[Shape::detents(6, 0.02), Shape::end_stops(-1.0, 1.5, 0.1)]);
+static SKEWED: EncoderReading = EncoderReading { linearity: 0.02, ..EncoderReading::IDEAL };
+
+/// A coupling in front of a wall that is not late is a static law with it; a late part beside the wall is a memory,
+/// which lets the device oscillate behind such an encoder.
+#[test]
+fn parts_behind_a_coupling_are_a_static_law_if_none_is_late() {
+    let late = Profile::of(&KNOB, 1);
+    for profile in [None, Some(late)] {
+        let wall = Some(Wall::spring(0.01, 0).behind(0.0));
+        let scene = Scene {
+            latency: Latency::NONE.read_by(&SKEWED),
+            coupling: Coupling::Spring { stiffness: 0.2 },
+            torque_limit: Some(0.3),
+            ..Scene::of(Device::damped(1.0, 1.0), 1.0, Parts { wall, profile, ..Parts::NONE }.sum())
+        };
+        let refused = scene.certify().err().map(|refused| refused.to_string());
+        assert_eq!(refused.is_some(), profile.is_some(), "{refused:?}");
+    }
 }
