@@ -123,7 +123,7 @@ fn a_chip_that_answers_late_has_the_codes_of_the_host() {
     let file = folder.path().join("late.toml");
     let scene = "name = \"late\"\ndevice = { inertia = 2.2e-5, damping = 0.022 }\nservo = { period = 0.0001 }\n\
                  environment = { type = \"damper-wall\", stiffness = 5.0, damping = 0.0, delay = 1 }\n\
-                 encoder = { chip = \"as5048a\", age = [1.81e-4, 3e-4], noise = 1 }\n\
+                 encoder = { chip = \"as5048a\", age = [1.71e-4, 3e-4], noise = 1 }\n\
                  limits = { torque = 0.5, full_scale = 1.0 }\n";
     std::fs::write(&file, scene).unwrap();
     let ran = haptic(&[

@@ -26,7 +26,7 @@ pub use magalpha::{MA600, MA702, MA732};
 pub use mt6701::MT6701;
 pub use mt6835::MT6835;
 pub use readings::Readings;
-pub use transfers::{TRANSFER_WITHIN, Transfers};
+pub use transfers::{RISE, TRANSFER_WITHIN, Transfers};
 
 use crate::encoder::CounterWidth;
 use crate::latency::Latency;
@@ -66,7 +66,7 @@ words! {
 pub struct Interface {
     /// Words of a transfer.
     pub words: usize,
-    /// Bits of a word, 8 to 16.
+    /// Bits of a word, 9 to 16.
     pub word_bits: u8,
     /// Whether the clock is high at rest.
     pub idle_high: bool,

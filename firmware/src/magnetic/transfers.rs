@@ -11,12 +11,16 @@ pub struct Transfers {
     pub interval: f64,
     /// Time in s from the beginning of one, where the chip is selected, to the instant of its count.
     pub begins: TimeRange,
-    /// Time in s from its end, where the chip is released, to that instant; negative for an end after it.
+    /// Time in s from its end, where the chip sees that it is released, to that instant; negative for an end after it.
     pub ends: TimeRange,
 }
 
 /// The longest time in s of a transfer that begins at its count, from there to its end.
 pub const TRANSFER_WITHIN: f64 = 1e-5;
+
+/// Longest time in s in which the pull-up, of at most 55 kΩ, has a released line high, that of the data or that which
+/// selects the chip: a wire of 20 cm has less than 100 pF.
+pub const RISE: f64 = 1e-5;
 
 /// Time in s in which the DMA and the SPI begin and end a transfer, besides its bits: an estimate from above.
 const MARGIN: f64 = 1e-6;
@@ -27,7 +31,7 @@ impl Transfers {
         Self {
             interval: period,
             begins: TimeRange::ZERO,
-            ends: TimeRange::between(-TRANSFER_WITHIN, 0.0),
+            ends: TimeRange::between(-TRANSFER_WITHIN - RISE, 0.0),
         }
     }
 
@@ -36,7 +40,7 @@ impl Transfers {
     pub const fn before_update(chip: &Chip, interval: f64, clock: f64) -> Self {
         let bits = chip.interface.clocks(clock) as f64 / clock;
         let lead = Self::lead_counts(chip, clock) as f64 / clock;
-        let ends = TimeRange::between(0.0, lead - bits);
+        let ends = TimeRange::between(-RISE, lead - bits);
         Self { interval, begins: TimeRange::between(bits, lead), ends }
     }
 

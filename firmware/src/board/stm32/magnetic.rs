@@ -2,8 +2,8 @@
 //!
 //! ```text
 //! the timer's update  ---- DMA 4 takes the fall of the data line away
-//!   its event         ---- DMA 3 writes SPE: selects the chip
-//!   its event         ---- DMA 2 may move as many words to the SPI as a transfer has
+//!   its event         ---- DMA 3 writes SPE some times: selects the chip, and lets it get ready
+//!   its event after the last ---- DMA 2 may move as many words to the SPI as a transfer has
 //!                          DMA 1 stores each word received
 //!   its event after the last one ---- DMA 5 writes CR1 until SPE is off: releases the chip
 //! DMA1_CHANNEL1       the last word is there: the servo's tick, with the count of the update, or [`take`] by
@@ -17,7 +17,8 @@
 //! the age of the reading.
 //!
 //! Not read in the manual [M]: that an event of a channel is as good an edge for a synchronisation as another input
-//! (tables of the multiplexer's inputs list it).
+//! (tables of the multiplexer's inputs list it). Between transfers the SPI drives none of its wires, so that each has a
+//! pull to its level at rest.
 
 use core::hint::cold_path;
 use core::sync::atomic::{AtomicU16, Ordering};
@@ -36,7 +37,9 @@ use super::wiring::{BUS, TIMER_CLOCK};
 use crate::board::isr_cell::IsrCell;
 use crate::encoder::RawCount;
 use crate::fault::Fault;
-use crate::magnetic::{Chip, Frame, Interface, LONGEST, ReadingError, Readings, TRANSFER_WITHIN};
+use crate::magnetic::{
+    Chip, Frame, Interface, LONGEST, RISE, ReadingError, Readings, TRANSFER_WITHIN,
+};
 
 /// A pin of the bus, and the alternate function that connects it.
 #[derive(Clone, Copy)]
@@ -97,18 +100,22 @@ const CLEAR: usize = 3;
 const END: usize = 4;
 /// All; each has nothing to do before those behind it begin.
 const CHANNELS: [usize; 5] = [RECEIVE, SEND, END, BEGIN, CLEAR];
+/// Looks at the SPI in which a transfer that goes on has surely ended.
+const LOOKS: u32 = 500;
 /// The event of a channel among the multiplexer's inputs for synchronisation and for generators.
 const EVENT_OF: u8 = 16;
 /// The generators of requests of two channels, and the request of the first.
-const GENERATORS: [(usize, usize, u8); 2] = [(RECEIVE, END, ENDING as u8), (CLEAR, BEGIN, 1)];
+const GENERATORS: [(usize, usize, u8); 2] =
+    [(RECEIVE, END, ENDING as u8), (CLEAR, BEGIN, BEGINNING)];
 const GENERATED: u8 = 1;
+/// Writes of CR1 that begin a transfer, all the same: the first selects the chip, and the clock begins after the last. An
+/// AS5048A wants 350 ns between (not confirmed), and each write takes six clocks or more.
+const BEGINNING: u8 = 10;
+/// The same in clocks, for a transfer that the program makes.
+const READY: u32 = 60;
 /// Writes of CR1 that end a transfer, of which the last takes SPE away: half a clock after its last bit is sampled the
 /// SPI is busy with it (RM0440, SPI: SPE goes off when BSY is), and each of these writes takes some clocks.
 const ENDING: usize = 8;
-
-/// Longest time in s in which the pull-up, of at most 55 kΩ, has the released data line high: a wire of 20 cm has less
-/// than 100 pF.
-const RISE: f64 = 1e-5;
 
 /// The line of the detector of edges: that of its pin.
 static FALL: u32 = 1 << BUS.input.pin;
@@ -248,7 +255,7 @@ fn acknowledge() {
 #[inline(never)]
 pub fn take_again(elapsed: impl Fn() -> u32) {
     /// Counts after the update at which the chip is surely selected.
-    const SELECTED: u32 = 64;
+    const SELECTED: u32 = 170;
     let Reader { readings, fault, setup, .. } = reader();
     let (chip, words) = (setup.chip, setup.chip.interface.words);
     let clock = 2_u32 << divider(chip.interface).to_bits();
@@ -278,17 +285,20 @@ pub fn take_again(elapsed: impl Fn() -> u32) {
 #[cold]
 #[inline(never)]
 fn restart(chip: &'static Chip, before: &[Frame]) {
-    let spi = BUS.spi;
-    spi.cr2().modify(|w| {
-        w.set_rxdmaen(false);
-        w.set_txdmaen(false);
-    });
-    // From the last to the first: so no request of one waits for another.
-    for number in CHANNELS.into_iter().rev() {
-        DMA.ch(number).cr().modify(|w| w.set_en(false));
-    }
-    acknowledge();
     let interrupts = DMA.ch(RECEIVE).cr().read().tcie();
+    // A channel that moves something is not stopped half-way.
+    for _ in 0..LOOKS {
+        if !BUS.spi.cr1().read().spe() {
+            break;
+        }
+    }
+    // No request of before waits in either unit.
+    for is_held in [true, false] {
+        pac::RCC.ahb1rstr().modify(|w| {
+            w.set_dma1rst(is_held);
+            w.set_dmamux1rst(is_held);
+        });
+    }
     // The unit loses its words, those to send, too.
     (BUS.reset)();
     connect(chip);
@@ -329,7 +339,6 @@ pub fn set_up(setup: &'static Setup) {
     });
     // The first may answer the set-up.
     exchange(&chip.command, words);
-    cortex_m::asm::delay((RISE * TIMER_CLOCK) as u32);
     // From here on the line must fall.
     pac::EXTI.pr(0).write(|w| w.0 = FALL);
     // A failure here is one of the first tick's, too.
@@ -346,19 +355,21 @@ pub fn set_up(setup: &'static Setup) {
 /// From now on each update of the timer begins a transfer; whether its end is an interrupt.
 pub fn start(interrupts: bool) {
     DMA.ch(RECEIVE).cr().modify(|w| w.set_tcie(interrupts));
-    for number in CHANNELS {
-        DMA.ch(number).cr().modify(|w| w.set_en(true));
-    }
+    // First, so that the SPI wants a word when the first transfer begins.
     BUS.spi.cr2().modify(|w| {
         w.set_rxdmaen(true);
         w.set_txdmaen(true);
     });
+    for number in CHANNELS {
+        DMA.ch(number).cr().modify(|w| w.set_en(true));
+    }
 }
 
-/// A transfer that the program makes.
+/// A transfer that the program makes; after it the wires are at rest.
 fn exchange(words: &Frame, count: usize) -> Frame {
     let (spi, begins) = (BUS.spi, u32::from(MEMORY.begins.load(Ordering::Relaxed)));
     spi.cr1().write_value(Cr1(begins));
+    cortex_m::asm::delay(READY);
     let mut frame = [0; LONGEST];
     for (word, received) in words.iter().zip(&mut frame).take(count) {
         while !spi.sr().read().txe() {}
@@ -368,6 +379,7 @@ fn exchange(words: &Frame, count: usize) -> Frame {
     }
     while spi.sr().read().bsy() {}
     spi.cr1().write_value(Cr1(begins & !SPE));
+    cortex_m::asm::delay((RISE * TIMER_CLOCK) as u32);
     frame
 }
 
@@ -391,19 +403,26 @@ fn connect(chip: &Chip) {
         let last = if at + 1 == ENDING { SPE } else { 0 };
         ends.store((begins.0 & !last) as u16, Ordering::Relaxed);
     }
-    spi.cr1().write_value(Cr1(begins.0 & !SPE));
+    // SSOE first: a master without it that finds its NSS low is no master any more.
     spi.cr2().write(|w| {
         w.set_ssoe(true);
         w.set_ds(Ds::from_bits(interface.word_bits - 1));
     });
+    spi.cr1().write_value(Cr1(begins.0 & !SPE));
     for pin in [BUS.select, BUS.clock, BUS.input, BUS.output] {
         let BusPin { port, pin, function } = pin;
         port.afr(pin / 8).modify(|w| w.set_afr(pin % 8, function));
         port.ospeedr().modify(|w| w.set_ospeedr(pin, Ospeedr::MEDIUM_SPEED));
         port.moder().modify(|w| w.set_moder(pin, Moder::ALTERNATE));
     }
-    for BusPin { port, pin, .. } in [BUS.select, BUS.input] {
-        port.pupdr().modify(|w| w.set_pupdr(pin, Pupdr::PULL_UP));
+    let clock = if interface.idle_high { Pupdr::PULL_UP } else { Pupdr::PULL_DOWN };
+    for (BusPin { port, pin, .. }, pull) in [
+        (BUS.select, Pupdr::PULL_UP),
+        (BUS.clock, clock),
+        (BUS.input, Pupdr::PULL_UP),
+        (BUS.output, Pupdr::PULL_DOWN),
+    ] {
+        port.pupdr().modify(|w| w.set_pupdr(pin, pull));
     }
     // The ports are as far apart as their numbers.
     let BusPin { port, pin, .. } = BUS.input;
@@ -446,7 +465,8 @@ fn connect_channels(chip: &'static Chip) {
             w.set_gnbreq(requests - 1);
         });
         generator.modify(|w| w.set_ge(true));
-        request(to, GENERATED + number as u8, 0, |w| w.set_ege(to == BEGIN));
+        let more = if to == BEGIN { requests - 1 } else { 0 };
+        request(to, GENERATED + number as u8, more, |w| w.set_ege(to == BEGIN));
     }
 }
 

@@ -271,12 +271,12 @@ fn an_mt6835_is_read_beside_the_bridge() {
 
 #[test]
 fn an_as5048a_is_read_beside_the_bridge() {
-    check_as504x(&knob_with("as5048a", "[1.16e-4, 2.51e-4]", 3));
+    check_as504x(&knob_with("as5048a", "[1.06e-4, 2.51e-4]", 3));
 }
 
 #[test]
 fn an_as5047p_is_read_beside_the_bridge() {
-    check_as504x(&knob_with("as5047p", "[1.15e-4, 1.64e-4]", 3));
+    check_as504x(&knob_with("as5047p", "[1.05e-4, 1.64e-4]", 3));
 }
 
 /// The model of the chip reads without its filter, which the certificate has.

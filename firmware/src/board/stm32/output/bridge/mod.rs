@@ -225,10 +225,13 @@ fn tell_heat(step: HeatStep) {
     }
 }
 
-/// Reports a fault to the servo. The gates are off.
+/// Reports a fault to the servo, unless it has not taken the one before yet, of which this may come. The gates are off.
 #[cold]
 #[inline(never)]
 fn tell(fault: Fault) {
+    if ![0, LOWER, RAISE].contains(&FAULT.load(Ordering::Relaxed)) {
+        return;
+    }
     let (code, numbers) = fault.encode();
     for (place, number) in FAULT_NUMBERS.iter().zip(numbers) {
         place.store(number, Ordering::Relaxed);
