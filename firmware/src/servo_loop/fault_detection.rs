@@ -36,10 +36,6 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         if let Some(fault) = hardware.reading_fault() {
             self.fail(fault, hardware, inbox);
         }
-        // The handling of a fault of the output may be the reason for the missed tick.
-        if let Some(event) = hardware.output_event() {
-            self.on_output_event(event, hardware, inbox);
-        }
         self.energy.missed::<M>(self.rendering.servo().step_to(raw));
         let missed = periods - 1;
         self.missed = self.missed.wrapping_add(missed);

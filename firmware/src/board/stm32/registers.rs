@@ -81,8 +81,11 @@ impl Hardware for Registers {
         self.output.event()
     }
 
-    #[cfg(all(feature = "magnetic", not(feature = "bridge")))]
+    #[cfg(feature = "magnetic")]
     fn reading_fault(&mut self) -> Option<Fault> {
+        #[cfg(feature = "bridge")]
+        return output::bridge::reading_fault();
+        #[cfg(not(feature = "bridge"))]
         magnetic::fault()
     }
 

@@ -202,14 +202,25 @@ impl Output {
 #[cold]
 #[inline(never)]
 fn take_event() -> Option<OutputEvent> {
-    let code = FAULT.swap(0, Ordering::Acquire);
-    // After the code: a fault that replaces a step of the limit brings numbers of its own.
-    let numbers = [0, 1].map(|i| FAULT_NUMBERS[i].load(Ordering::Relaxed));
-    match code {
+    match FAULT.swap(0, Ordering::Acquire) {
         LOWER => Some(OutputEvent::Heat(HeatStep::Lower)),
         RAISE => Some(OutputEvent::Heat(HeatStep::Raise)),
-        code => Fault::decode(code, numbers).map(OutputEvent::Fault),
+        code => decoded(code).map(OutputEvent::Fault),
     }
+}
+
+/// A fault of this code. Its numbers are read after the code: a fault that replaces a step of the limit brings its own.
+fn decoded(code: u32) -> Option<Fault> {
+    Fault::decode(code, [0, 1].map(|i| FAULT_NUMBERS[i].load(Ordering::Relaxed)))
+}
+
+/// The fault of the encoder's readings that waits, if one does: a tick may be late because of its handling.
+#[cfg(feature = "magnetic")]
+#[cold]
+#[inline(never)]
+pub fn reading_fault() -> Option<Fault> {
+    let waiting = decoded(FAULT.load(Ordering::Acquire));
+    waiting.filter(|fault| matches!(fault, Fault::EncoderReading { .. }))
 }
 
 /// Passes a step of the torque limit to the servo, which takes it in the tick that follows; a fault goes first.
