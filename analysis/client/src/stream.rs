@@ -44,8 +44,8 @@ pub enum StreamError {
     #[error("the program {program} takes no torque from a host: its scene has no [host] table")]
     NoHost { program: String },
     #[error(
-        "the rate of a stream is {rate} Hz; it must be from {least} to {most} Hz, at most one in each tick, and no \
-         more than the port carries"
+        "the rate of a stream is {rate} Hz; it must be from {least} to {most} Hz, at least two torques in the host's \
+         timeout, at most one in each tick, and no more than the port carries"
     )]
     Rate { rate: f64, least: f64, most: f64 },
     #[error(
@@ -95,9 +95,11 @@ impl Link {
             Address::Serial { baud, .. } => ticks.min(torques_of_line(*baud)),
             _ => ticks,
         };
+        // From half of the timeout on the board fades a torque out.
+        let least = self.board().budget.map_or(SLOWEST, |budget| SLOWEST.max(2.0 / budget.timeout));
         // A rate of 1 / 0.001 s is 1000.0000000000001 Hz or less.
-        if !(rate >= SLOWEST && rate <= most * (1.0 + 1e-9)) {
-            return Err(StreamError::Rate { rate, least: SLOWEST, most }.into());
+        if !(rate >= least * (1.0 - 1e-9) && rate <= most * (1.0 + 1e-9)) {
+            return Err(StreamError::Rate { rate, least, most }.into());
         }
         if self.board().budget.is_none() {
             return Err(StreamError::NoHost { program: self.board().program.clone() }.into());

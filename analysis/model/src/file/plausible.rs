@@ -23,7 +23,7 @@ const FARTHEST_FACE: f64 = 3.0 * TAU;
 
 /// A sentence for each implausible number of a file.
 pub fn warnings(file: &SceneFile) -> Vec<String> {
-    let doubts = [step, period, inertia, damping, friction, cogging, full_scale, face]
+    let doubts = [step, linearity, period, inertia, damping, friction, cogging, full_scale, face]
         .map(|doubt| doubt(file));
     doubts.into_iter().flatten().collect()
 }
@@ -47,6 +47,16 @@ fn step(file: &SceneFile) -> Option<String> {
     let Key { path, unit, .. } = key::ENCODER_STEP;
     Some(format!(
         "the encoder has {counts} counts a turn, {step} {unit} each: did you mean `{path}` = {meant}, of {step} {of}?"
+    ))
+}
+
+/// A chip has an error over the angle, whether it is stated or not.
+fn linearity(file: &SceneFile) -> Option<String> {
+    let chip = file.chip.filter(|_| file.scene.latency.encoder.linearity == 0.0)?;
+    Some(format!(
+        "`{}` is not stated, and the certificate takes the readings of {} for free of any error over the angle",
+        key::LINEARITY.path,
+        chip.name
     ))
 }
 
