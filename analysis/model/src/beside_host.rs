@@ -45,7 +45,7 @@ pub fn assumption(host: &HostTorque, left: f64) -> String {
     format!(
         "a host's torque of at most {torque} N m is scaled down to what its budget pays for, {}, and fades to zero \
          within {timeout} s if it is not renewed; its share of {damping} N m s/rad is taken from delta, which leaves \
-         {} N m s/rad for the scene",
+         {} N m s/rad for the scene, and from the damping that the device may lose without the host",
         budget(host),
         rounded_down(left, 12)
     )
