@@ -164,7 +164,7 @@ pub fn plain(rng: &mut impl Rng, period: f64) -> Latency {
 
 /// The same with the readings of an encoder, in every third scene. Its own numbers decide, so that the other scenes are
 /// what they are without it.
-pub fn read(latency: Latency, period: f64) -> Latency {
+pub fn read(latency: Latency, period: f64, coupling: Coupling) -> Latency {
     let rng = &mut ChaCha8Rng::seed_from_u64(period.to_bits());
     if !rng.random_bool(0.33) {
         return latency;
@@ -174,6 +174,10 @@ pub fn read(latency: Latency, period: f64) -> Latency {
         let least = if rng.random_bool(0.5) { 0.0 } else { rng.random_range(0.0..1.5) };
         let most = least + if rng.random_bool(0.5) { log_uniform(rng, 1e-3, 0.3) } else { 0.0 };
         reading.age = TimeRange::between(least * period, most * period);
+    }
+    if coupling == Coupling::Matched {
+        // No more than an age has a proof there.
+        return latency.read_by(kept(reading));
     }
     // The filter of an encoder is behind its error, and the simulated one before.
     if latency.sensor_lag.is_zero() && rng.random_bool(0.7) {

@@ -343,8 +343,10 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
         coupling,
         environment: Parts::NONE.sum(),
         latency: match lags {
-            true if kind == Kind::Sharp && mode == Mode::Bare => read(plain(rng, period), period),
-            true => read(draw_latency(rng, mode, period), period),
+            true if kind == Kind::Sharp && mode == Mode::Bare => {
+                read(plain(rng, period), period, coupling)
+            }
+            true => read(draw_latency(rng, mode, period), period, coupling),
             false => Latency::NONE,
         },
         torque_limit: limited.then(|| full_scale * log_uniform(rng, 0.15, 0.999)),
