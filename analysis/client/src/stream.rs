@@ -29,7 +29,7 @@ pub struct StreamTick {
     pub torque: f64,
     /// Torque in N m that was wanted and not given.
     pub refused: f64,
-    /// The reason for that.
+    /// The reason for that: the energy, the host's largest torque, or that the servo does not run.
     pub limit: LimitReason,
     /// The servo's state; the torque is zero unless it runs.
     pub state: State,

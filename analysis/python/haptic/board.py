@@ -54,7 +54,8 @@ class Streamed(TypedDict):
     energy: NDArray[np.float64]
     """Energy in J that the budget had left."""
     limit: NDArray[np.str_]
-    """Why it was refused, one of LIMITS: ``energy`` where the budget was spent."""
+    """Why it was refused, one of LIMITS: ``energy`` where the budget was spent, ``torque`` above ``host.torque``,
+    ``ramp`` while the servo does not run."""
     state: NDArray[np.str_]
     """State of the servo, one of STATES: it gives none unless it runs."""
 
@@ -177,8 +178,8 @@ class Board:
 
         ``function(position, velocity, time)`` gets rad, rad/s and s since the beginning, and returns a torque
         in N m, positive towards positive angles. The board adds it to the torque of its scene, within the
-        energy budget of its program, and at most ``host.torque`` of it. With ``smooth`` it moves along a line
-        from torque to torque.
+        energy budget of its program, and at most ``host.torque`` of it: a UserWarning tells the first torque above
+        that, and a board that is not armed. With ``smooth`` it moves along a line from torque to torque.
 
         It ends after ``duration`` seconds, at an exception of the function, which is raised again, and at a
         torque that is not finite (:class:`StreamError`); the torque is then zero. If this program hangs, the

@@ -1,5 +1,6 @@
 //! A board behind a port, and a simulated board. `haptic/board.py` makes mappings and arrays of them.
 
+use std::ffi::CString;
 use std::num::NonZeroU32;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
@@ -15,6 +16,7 @@ use haptic_model::file::Purpose;
 use haptic_model::quantity::shortened;
 use haptic_servo::servo_loop::State;
 use haptic_servo::torque::LimitReason;
+use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use pyo3::types::{PyByteArray, PyDict};
 use thiserror::Error;
@@ -252,7 +254,8 @@ impl Connection {
         duration: f64,
         smooth: bool,
     ) -> Result<Bound<'py, PyDict>, BoardFailure> {
-        let mut ticks = Vec::new();
+        let most = self.with(py, |link| Ok(link.board().budget.map_or(f64::INFINITY, |budget| budget.torque)))?;
+        let (mut ticks, mut is_told) = (Vec::new(), [false; 2]);
         let torque = |tick: &StreamTick| {
             if tick.time >= duration {
                 return Ok(None);
@@ -263,13 +266,15 @@ impl Connection {
             Python::attach(|py| {
                 py.check_signals()?;
                 let returned = function.call1(py, (tick.position, tick.velocity, tick.time))?;
-                returned.extract::<f64>(py).map(Some).map_err(|_| {
+                let torque = returned.extract::<f64>(py).map_err(|_| {
                     let (returned, time) = (shortened(&returned.to_string(), 60), tick.time);
-                    BoardFailure::Python(errors::StreamError::new_err(format!(
+                    errors::StreamError::new_err(format!(
                         "the function returned {returned} at {time} s; it must be a torque in N m. The \
                          torque is switched off"
-                    )))
-                })
+                    ))
+                })?;
+                warn_of(py, tick, (torque, most), &mut is_told)?;
+                Ok(Some(torque))
             })
         };
         self.with(py, |link| {
@@ -289,6 +294,33 @@ impl Connection {
         columns.codes("state", |tick| tick.state as u8)?;
         Ok(columns.columns)
     }
+}
+
+/// Warns once in a stream of a servo that gives no torque, and once of a torque in N m that is above the host's.
+fn warn_of(
+    py: Python<'_>,
+    tick: &StreamTick,
+    (torque, most): (f64, f64),
+    [is_idle, is_clipped]: &mut [bool; 2],
+) -> PyResult<()> {
+    let warn = |sentence: String| {
+        let category = py.get_type::<PyUserWarning>();
+        PyErr::warn(py, &category, &CString::new(sentence)?, 2)
+    };
+    let (time, state) = (tick.time, tick.state);
+    if !state.is_armed() && !core::mem::replace(is_idle, true) {
+        warn(format!(
+            "the board is {state} at {time} s of the stream and gives none of its torques: arm it before, with \
+             arm()"
+        ))?;
+    }
+    if torque.is_finite() && torque.abs() > most && !core::mem::replace(is_clipped, true) {
+        warn(format!(
+            "the function returned a torque of {torque} N m at {time} s; the board gives at most the \
+             {most} N m of host.torque and refuses the rest"
+        ))?;
+    }
+    Ok(())
 }
 
 /// Rows as columns for NumPy.

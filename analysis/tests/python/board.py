@@ -11,6 +11,7 @@ import struct
 import sys
 import threading
 import time
+import warnings
 import zlib
 
 import haptic
@@ -157,7 +158,16 @@ def pushes():
             sides[side].append(position)
         return 0.3 * side
 
+    def warned(torque):
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            streamed = board.stream(lambda *_: torque, rate=200.0, duration=0.2)
+        return [str(warning.message) for warning in told], streamed
+
     with haptic.simulated_board(scene) as simulated, haptic.connect(simulated.port) as board:
+        (idle,), streamed = warned(0.2)
+        assert idle.startswith("the board is disarmed at 0 s of the stream and gives none of its torques"), idle
+        assert set(streamed["limit"][1:]) == {"ramp"} and np.allclose(streamed["refused"][1:], 0.2, atol=1e-3)
         board.arm()
         while board.status()["state"] != "running":
             time.sleep(0.01)
@@ -166,6 +176,11 @@ def pushes():
         moved = np.mean(sides[1]) - np.mean(sides[-1])
         assert len(sides[1]) > 100 and 0.05 < moved < 0.11, (len(sides[1]), moved)
         refuses(haptic.StreamError, "returned a torque of NaN", lambda: board.stream(lambda *_: math.nan, 100))
+        assert warned(-0.5)[0] == []
+        (above,), streamed = warned(-0.8)
+        assert above.startswith("the function returned a torque of -0.8 N m at 0 s; the board gives at most the 0.5 N m")
+        clipped = streamed["limit"] == "torque"
+        assert clipped.any() and np.allclose(streamed["refused"][clipped], -0.3, atol=2e-3), streamed
         pumped = board.stream(lambda _, velocity, time: math.copysign(0.5, velocity), 200, duration=1.0)
         assert len({len(column) for column in pumped.values()}) == 1 and set(pumped["state"]) == {"running"}
         limited = pumped["limit"] == "energy"

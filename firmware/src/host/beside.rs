@@ -14,6 +14,7 @@ use crate::latency::Latency;
 use crate::output_timing::OutputTiming;
 use crate::scene::{Scene, Timing};
 use crate::servo::RenderingOptions;
+use crate::torque::LimitReason;
 use crate::transducers::Transducers;
 
 /// Ticks after the amplifier was switched off in which the device's motion gives nothing back: the rest
@@ -37,6 +38,8 @@ pub struct Taken {
     pub torque: f32,
     /// Torque in N m that was wanted and not given.
     pub refused: f32,
+    /// The reason for that.
+    pub limit: LimitReason,
     /// The servo's state as a number.
     pub state: usize,
     /// Commands whose torque was no finite number.
@@ -367,6 +370,8 @@ pub struct Hosted<const TICKS: usize, const LAGS: usize> {
     fade: f32,
     /// The number of the last command.
     taken: u32,
+    /// Its codes beyond the host's largest.
+    beyond: i32,
     invalid: u16,
     /// Ticks until motion gives energy back again.
     unknown: u32,
@@ -396,15 +401,29 @@ impl<const TICKS: usize, const LAGS: usize> Hosted<TICKS, LAGS> {
         }
         self.taken = sent;
         let wanted = f32::from_bits(torque);
-        let torque = self.tank.in_range(wanted);
+        let (torque, beyond) = (self.tank.in_range(wanted), self.tank.beyond(wanted));
         if !wanted.is_finite() {
             self.invalid = self.invalid.saturating_add(1);
         }
+        let before = (self.stream.wanted(), core::mem::replace(&mut self.beyond, beyond));
         let is_hot = self.heat.iter().any(|heat| heat.now < heat.cold);
-        let is_open = tick.opening == Some(0) && !is_hot;
-        let wanted = if is_open { self.stream.wanted() } else { torque };
+        let closed = match tick.opening {
+            Some(0) if is_hot => Some(LimitReason::Heat),
+            Some(0) => None,
+            _ => Some(LimitReason::Ramp),
+        };
+        let (wanted, beyond) = if closed.is_some() { (torque, beyond) } else { before };
+        // On the way to the largest torque, and from there, the wanted torque is within it.
+        let beyond = if wanted.abs() == self.tank.largest() { beyond } else { 0 };
         let given = self.tank.given();
-        let [refused, given] = [wanted - given, given].map(|codes| codes as f32 * self.tank.code());
+        let limit = match closed {
+            _ if wanted == given && beyond == 0 => LimitReason::None,
+            Some(closed) => closed,
+            None if wanted == given => LimitReason::Torque,
+            None => LimitReason::Energy,
+        };
+        let refused = (wanted - given).saturating_add(beyond);
+        let [refused, given] = [refused, given].map(|codes| codes as f32 * self.tank.code());
         channel.publish(
             sent,
             [
@@ -414,7 +433,7 @@ impl<const TICKS: usize, const LAGS: usize> Hosted<TICKS, LAGS> {
                 self.tank.rounded_energy().to_bits(),
                 given.to_bits(),
                 refused.to_bits(),
-                tick.state,
+                tick.state | u32::from(limit as u8) << 8,
                 u32::from(self.invalid),
             ],
         );
@@ -444,6 +463,7 @@ impl<const TICKS: usize, const LAGS: usize> BesideServo for Hosted<TICKS, LAGS> 
             due: 0,
             fade: 0.0,
             taken: 0,
+            beyond: 0,
             invalid: 0,
             unknown: 0,
             heat: [HeatLevel { now: 0, cold: 0 }; MAY_HAVE_BRIDGE as usize],
@@ -579,7 +599,8 @@ impl<const TICKS: usize, const LAGS: usize> BesideServo for Hosted<TICKS, LAGS> 
             energy: f32::from_bits(energy),
             torque: f32::from_bits(torque),
             refused: f32::from_bits(refused),
-            state: state as usize,
+            limit: LimitReason::ALL.get((state >> 8) as usize).copied().unwrap_or_default(),
+            state: (state & 0xff) as usize,
             invalid: invalid as u16,
         })
     }

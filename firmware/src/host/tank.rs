@@ -366,6 +366,17 @@ impl<D: DelayLine<i64>, const LAGS: usize> Tank<D, LAGS> {
         ((codes + half) as i32).clamp(-self.numbers.largest, self.numbers.largest)
     }
 
+    /// The whole codes of a wanted torque in N m beyond the host's largest, with its sign; none of what is no finite
+    /// number.
+    pub(super) fn beyond(&self, wanted: f32) -> i32 {
+        if !wanted.is_finite() {
+            return 0;
+        }
+        // The cast saturates.
+        let codes = (wanted / self.numbers.code) as i32;
+        codes - codes.clamp(-self.numbers.largest, self.numbers.largest)
+    }
+
     /// The largest command in codes.
     pub(super) const fn largest(&self) -> i32 {
         self.numbers.largest

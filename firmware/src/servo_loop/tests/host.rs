@@ -113,9 +113,41 @@ fn a_torque_that_is_no_number_is_zero_and_reported() {
         assert_eq!(run.tick(FREE), 0.0);
     }
     assert_eq!(run.report().unwrap().invalid, 3);
-    run.send(-9.0, 0);
-    run.tick(FREE);
-    assert!((run.tick(FREE) + 0.5).abs() < STEP, "the host's largest");
+}
+
+/// What is beyond is refused, not lost without a word.
+#[test]
+fn a_torque_beyond_the_hosts_largest_is_refused() {
+    let mut run = Run::new();
+    let mut tick = |torque| {
+        run.send(torque, 0);
+        let given = run.tick(FREE);
+        let taken = run.report().unwrap();
+        (given, f64::from(taken.torque), f64::from(taken.refused), taken.limit)
+    };
+    assert_eq!(tick(-1.75), (0.0, 0.0, 0.0, LimitReason::None));
+    let (given, told, refused, limit) = tick(0.5);
+    assert!((given + 0.5).abs() < STEP && (given - told).abs() < 1e-6, "{given} {told}");
+    assert!((refused + 1.25).abs() < 2.0 * STEP, "{refused}");
+    assert_eq!(limit, LimitReason::Torque);
+    let (given, _, refused, limit) = tick(f32::MAX);
+    assert!((given - 0.5).abs() < STEP, "{given}");
+    assert_eq!((refused, limit), (0.0, LimitReason::None), "the largest is not beyond");
+    let (_, _, refused, limit) = tick(0.0);
+    assert!(refused > 1e5 && limit == LimitReason::Torque, "{refused}");
+}
+
+/// The reason in a servo that is off, too.
+#[test]
+fn a_servo_that_is_off_refuses_a_torque() {
+    let mut run = Run::booted(Board::new());
+    for torque in [0.3, 0.0] {
+        run.send(torque, 0);
+        assert_eq!(run.tick(FREE), 0.0);
+        let taken = run.report().unwrap();
+        assert!((f64::from(taken.refused) - f64::from(torque)).abs() < STEP, "{taken:?}");
+        assert_eq!(taken.limit == LimitReason::Ramp, torque != 0.0, "{taken:?}");
+    }
 }
 
 /// The hand moves as it gets most from the torque that acts: that of the tick before.
