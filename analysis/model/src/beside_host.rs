@@ -26,6 +26,12 @@ pub fn check(
     HostResponse::of(host, &file.scene.latency, &sampling).map(drop)
 }
 
+/// The reason why no board has the host beside a scene without a torque limit: that takes the full scale.
+pub fn not_on_a_board(file: &SceneFile, host: &HostTorque) -> Option<HostError> {
+    let full_scale = file.transducers(None, None).full_scale_torque;
+    file.scene.torque_limit.is_none().then(|| host.check_range(None, full_scale).err())?
+}
+
 /// How a file's servo reads positions and gives torques, each at its count.
 pub fn sampling(file: &SceneFile) -> Sampling {
     let Transducers { counts_per_turn, full_scale_torque, .. } = file.transducers(None, None);

@@ -413,6 +413,13 @@ impl VerdictReport {
         if let Err(error) = beside_host::check(file, host, margins) {
             return self.reject_host(&error);
         }
+        if let Some(error) = beside_host::not_on_a_board(file, host) {
+            if self.is_for_a_board {
+                return self.reject_host(&error);
+            }
+            self.board.get_or_insert_with(|| error.to_string());
+            (self.on_board, self.is_rendered) = (Some(Verdict::Rejected), false);
+        }
         let left = |margin: f64| (margin - host.damping).next_down();
         self.margin = self.margin.map(left);
         self.margin_on_board = self.margin_on_board.map(|margin| left(margin).max(0.0));

@@ -183,8 +183,7 @@ fn measured(
     run: impl FnOnce(&FileProgram, Input, &mut dyn Controller) -> Result<RunOutcome, CommandError>,
 ) -> Result<InstructionStats, CommandError> {
     let program = FileProgram::of(file, name, None, None)?;
-    let certified = file.scene.certify();
-    let certified = certified.map_err(|rejection| CommandError::Refused(Box::new(rejection)))?;
+    let certified = file.scene.certify().map_err(|_| CommandError::of_rejected(file))?;
     let transducers = file.transducers(None, None);
     let mut servo = controller::<_, f32>(&certified, &transducers)?;
     let device = SimulatedDevice::new(&file.scene, file.demonstration(), &transducers)?;

@@ -136,7 +136,7 @@ fn of_file(
     board: Option<BoardModel>,
     port: &Address,
 ) -> Result<SimulatedBoard, CommandError> {
-    file.scene.certify().map_err(|rejection| CommandError::Refused(Box::new(rejection)))?;
+    file.scene.certify().map_err(|_| CommandError::of_rejected(file))?;
     let Some(board) = board else {
         return Ok(SimulatedBoard::of_file(file, port, Pacing::RealTime)?);
     };

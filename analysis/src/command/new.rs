@@ -37,9 +37,9 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         }
         let file = scene_file(from)?;
         let program = FileProgram::of(&file, from, None, None)?;
-        file.scene.certify().map_err(|rejection| CommandError::FileNotBuilt {
+        file.scene.certify().map_err(|_| CommandError::FileNotBuilt {
             file: from.clone(),
-            why: Box::new(CommandError::Refused(Box::new(rejection))),
+            why: Box::new(CommandError::of_rejected(&file)),
             is_certified: false,
         })?;
         if program.bridge.is_some() {

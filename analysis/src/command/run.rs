@@ -383,7 +383,7 @@ impl RunSetup {
             return Err(CommandError::NoHost { scene: self.name.clone() });
         };
         if self.report.verdict != Verdict::Certified {
-            return Err(CommandError::HostRefused { why: self.report.message.clone() });
+            return Err(CommandError::FileRefused { why: self.report.message.clone() });
         }
         let format = match format {
             NumberFormat::F32 => Format::F32,
@@ -439,8 +439,7 @@ fn of_program(program: &'static Program, arguments: &Arguments) -> Result<RunSet
 }
 
 fn of_file(file: SceneFile, arguments: &Arguments) -> Result<RunSetup, CommandError> {
-    let certified =
-        file.scene.certify().map_err(|rejection| CommandError::Refused(Box::new(rejection)))?;
+    let certified = file.scene.certify().map_err(|_| CommandError::of_rejected(&file))?;
     let (counts, full_scale) = (arguments.counts_per_rev, arguments.full_scale);
     let is_on_board = arguments.target != Target::Host;
     let program = is_on_board

@@ -4,14 +4,16 @@ use std::io;
 use std::path::PathBuf;
 
 use haptic_servo::certificate::Rejection;
+use haptic_servo::number::Format;
 use thiserror::Error;
 
-use crate::file::FileError;
+use crate::file::{FileError, SceneFile};
 use crate::link::Address;
 use crate::quantity::significant;
 use crate::simulation::SimulationError;
 use crate::studies::error::StudyError;
 use crate::toolchain::TorqueOutput;
+use crate::verdict::judge_file;
 
 /// Verdict of a command, which becomes the exit status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,7 +45,7 @@ pub enum CommandError {
     NoHost { scene: String },
     /// Exit status 1, because the input was valid.
     #[error("{why}")]
-    HostRefused { why: String },
+    FileRefused { why: String },
     #[error("{file}: {why}")]
     NoBoardProgram { file: String, why: String },
     #[error(
@@ -175,12 +177,17 @@ impl From<StudyError> for CommandError {
 }
 
 impl CommandError {
+    /// Of a file whose scene is not certified: the sentence of its verdict.
+    pub(super) fn of_rejected(file: &SceneFile) -> Self {
+        Self::FileRefused { why: judge_file(file, Format::F64).message }
+    }
+
     /// Whether the input was valid and this is its result.
     pub(super) fn is_negative_verdict(&self) -> bool {
         matches!(
             self,
             Self::Refused(_)
-                | Self::HostRefused { .. }
+                | Self::FileRefused { .. }
                 | Self::FileNotBuilt { is_certified: false, .. }
                 | Self::LeftOut { .. }
                 | Self::RanAway { .. }
