@@ -45,6 +45,15 @@ pub fn budget(host: &HostTorque) -> String {
     format!("{energy} J at once and {power} W on average, whatever it sends")
 }
 
+/// What remedies of a rejected scene leave out.
+pub fn without_host(host: &HostTorque) -> String {
+    format!(
+        "the remedies are those of the scene without its host, whose share of {} N m s/rad has to be below the margin \
+         that they leave",
+        host.damping
+    )
+}
+
 /// What the verdict assumes of the host, with the damping that is left for the scene.
 pub fn assumption(host: &HostTorque, left: f64) -> String {
     let HostTorque { damping, torque, timeout, .. } = host;

@@ -406,6 +406,11 @@ impl VerdictReport {
     /// Takes a host's share from the margins of a certified scene, or rejects the scene.
     fn add_host(&mut self, file: &SceneFile, host: &HostTorque) {
         if self.verdict != Verdict::Certified {
+            if !self.remedies.is_empty() {
+                let warning = beside_host::without_host(host);
+                self.assumptions.push(warning.clone());
+                self.warnings.push(warning);
+            }
             return;
         }
         let is_on_board = self.is_for_a_board && self.is_rendered;
