@@ -10,16 +10,17 @@ use crate::quantity::rounded;
 const OCTAVES: i32 = 10;
 /// Halvings of the last octave, to less than three digits.
 const HALVINGS: u32 = 12;
-/// Digits of a remedy, and how many values are tried behind the nearest.
+/// Digits of a remedy, and how many values are tried from the nearest on.
 const DIGITS: usize = 3;
 const CANDIDATES: usize = 3;
 
 /// A certified scene that a board rejects may pass with one of these changed: those with more of the last, and
 /// less of the others.
-const SEARCHED: [Parameter; 7] = [
+const SEARCHED: [Parameter; 8] = [
     Parameter::Stiffness,
     Parameter::Damping,
     Parameter::ProfileTorque,
+    Parameter::TorqueLimit,
     Parameter::CouplingStiffness,
     Parameter::Period,
     Parameter::DeviceDamping,
@@ -87,9 +88,7 @@ impl<P: Fn(Parameter, f64) -> bool> RemedySearch<'_, P> {
         let unit = 10.0_f64.powi(passes.log10().floor() as i32 + 1 - DIGITS as i32);
         let step = if grows { unit } else { -unit };
         let nearest = rounded(passes, DIGITS);
-        let is_behind = (nearest >= passes) == grows;
-        let first = if is_behind { nearest } else { nearest + step };
-        let mut tried = (0..CANDIDATES).map(|n| rounded(first + n as f64 * step, DIGITS));
+        let mut tried = (0..CANDIDATES).map(|n| rounded(nearest + n as f64 * step, DIGITS));
         tried.find(|&value| (self.passes)(parameter, value))
     }
 }

@@ -358,9 +358,10 @@ fn is_shortage(rejection: &Rejection) -> bool {
 fn no_remedy(scene: &Scene) -> &'static str {
     match scene.environment.wall() {
         Some(_) => {
-            "no change of one number is enough; `haptic design stiffest` searches coupling, rate and wall together"
+            "no change of one number by up to a factor of 64 was found to be enough; `haptic design stiffest` searches \
+             coupling, rate and wall together"
         }
-        None => "no change of one number is enough",
+        None => "no change of one number by up to a factor of 64 was found to be enough",
     }
 }
 
