@@ -14,6 +14,7 @@ use crate::shaft::{HandHeldShaft, LedShaft, Shaft};
 use crate::toolchain::BoardModel;
 use crate::virtual_board::{
     LONGEST_ARMING, Sample, VirtualBoard, VirtualBoardError, VirtualBoardReport, fading_samples,
+    request_to_arm,
 };
 
 /// Periods of the modulation in which the current sensors' offsets are measured, twice over.
@@ -112,7 +113,7 @@ impl BridgeBoard {
             }
             has_begun |= is_aligning;
         }
-        Err(VirtualBoardError::NotAligned { samples, log: self.board.last_log()? })
+        Err(VirtualBoardError::NotAligned { samples, said: self.board.last_words()? })
     }
 
     /// Turns the shaft smoothly from an angle in rad to zero.
@@ -123,21 +124,22 @@ impl BridgeBoard {
             path: vec![(0.0, from), (RETURN, 0.0)],
             ..HandTrajectory::push_and_let_go()
         };
+        // The board tells why the alignment failed, if it did.
+        let mut bytes = frame(&ToBoard::Status);
         for tick in 1..=(RETURN / period).ceil() as usize {
             shaft.lead_to(way.position(tick as f64 * period));
-            self.period(&mut shaft, &[])?;
+            self.period(&mut shaft, &std::mem::take(&mut bytes))?;
         }
         Ok(())
     }
 
     fn arm(&mut self, shaft: &mut LedShaft) -> Result<(), VirtualBoardError> {
-        let mut bytes = frame(&ToBoard::Arm { id: 0 });
-        for _ in 0..LONGEST_ARMING {
-            if self.period(shaft, &std::mem::take(&mut bytes))?.amplifier {
+        for sample in 0..LONGEST_ARMING {
+            if self.period(shaft, &request_to_arm(sample))?.amplifier {
                 return Ok(());
             }
         }
-        Err(VirtualBoardError::NotArmed { log: self.board.last_log()? })
+        Err(VirtualBoardError::NotArmed { said: self.board.last_words()? })
     }
 
     /// Switches it off.

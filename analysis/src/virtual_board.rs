@@ -12,7 +12,8 @@ use haptic_model::board::client::frame;
 use haptic_servo::current::{Drive, Motor, Regeneration, Winding};
 use haptic_servo::dac::DacCode;
 use haptic_servo::servo::RenderingOptions;
-use haptic_servo::wire::message::ToBoard;
+use haptic_servo::wire::message::{LONGEST_TO_HOST, Outcome, Status, ToBoard, ToHost};
+use haptic_servo::wire::{CHECKSUM, Decoder};
 
 use crate::emulator::InstructionStats;
 use crate::shaft::{Shaft, ShaftMotion};
@@ -41,13 +42,13 @@ pub enum VirtualBoardError {
     #[error("the virtual board has stopped: {said}")]
     Stopped { said: String },
     #[error(
-        "the motor at the virtual board's bridge is not aligned after {samples} samples; its log: {log}"
+        "the motor at the virtual board's bridge is not aligned after {samples} samples; it has told: {said}"
     )]
-    NotAligned { samples: usize, log: String },
+    NotAligned { samples: usize, said: String },
     #[error(
-        "the virtual board's amplifier has stayed off for {LONGEST_ARMING} samples; its log: {log}"
+        "the virtual board's amplifier has stayed off for {LONGEST_ARMING} samples; it has told: {said}"
     )]
-    NotArmed { log: String },
+    NotArmed { said: String },
     #[error(transparent)]
     Device(#[from] SimulationError),
 }
@@ -84,6 +85,17 @@ pub struct VirtualBoardReport {
     pub log: Vec<String>,
 }
 
+/// The bytes to the serial port in a sample after the request to arm: that request, and one for the fault of a servo
+/// that is not armed long after.
+pub fn request_to_arm(sample: usize) -> Vec<u8> {
+    const ASKED: usize = LONGEST_ARMING - 200;
+    match sample {
+        0 => frame(&ToBoard::Arm { id: 0 }),
+        ASKED => frame(&ToBoard::Status),
+        _ => Vec::new(),
+    }
+}
+
 /// Samples from arming until the clamp of a servo with this period in s has opened.
 pub fn fading_samples(period: f64) -> usize {
     // Rounded up, and two for the ticks in which it begins and ends.
@@ -115,6 +127,9 @@ pub struct VirtualBoard {
     before: i32,
     /// Of a magnetic encoder's reading at rest: none of a counter.
     rest: Option<Rest>,
+    decoder: Decoder<{ LONGEST_TO_HOST + CHECKSUM }>,
+    /// Its reasons for refused requests, and its faults.
+    told: Vec<String>,
 }
 
 /// A chip that reads the same angle [200 times](haptic_servo::magnetic::Chip::frozen_after) counts as stopped. So one
@@ -164,7 +179,8 @@ impl VirtualBoard {
         let output = process.stdout.take().ok_or_else(missing)?;
         let (input, output) = (Some(BufWriter::new(input)), BufReader::new(output));
         let rest = is_magnetic.then(Rest::default);
-        Ok(Self { process, input, output, count: 0, before: 0, rest })
+        let (decoder, told) = (Decoder::new(), Vec::new());
+        Ok(Self { process, input, output, count: 0, before: 0, rest, decoder, told })
     }
 
     /// Waits for the end of the sample that runs.
@@ -200,15 +216,14 @@ impl VirtualBoard {
     /// Arms the servo over the serial port, and runs until the clamp of a servo with this period in s has
     /// opened. The device stands still meanwhile.
     pub fn arm_and_wait(&mut self, period: f64) -> Result<(), VirtualBoardError> {
-        let mut arm = frame(&ToBoard::Arm { id: 0 });
-        for _ in 0..LONGEST_ARMING {
+        for sample in 0..LONGEST_ARMING {
             let on = self.sample()?.amplifier;
-            self.answer_at_rest(&std::mem::take(&mut arm), true)?;
+            self.answer_at_rest(&request_to_arm(sample), true)?;
             if on {
                 return self.hold_still(fading_samples(period));
             }
         }
-        Err(VirtualBoardError::NotArmed { log: self.last_log()? })
+        Err(VirtualBoardError::NotArmed { said: self.last_words()? })
     }
 
     /// Runs this many samples with the device at rest; then the board waits for the first count.
@@ -238,9 +253,11 @@ impl VirtualBoard {
         if self.rest.is_some() { self.before } else { self.count }
     }
 
-    /// Switches it off, and gives its log in a line.
-    pub fn last_log(&mut self) -> Result<String, VirtualBoardError> {
-        Ok(self.end().map_err(|error| self.stopped(&error))?.log.join("; "))
+    /// Switches it off, and gives in a line what it has told: refusals, faults and its log.
+    pub fn last_words(&mut self) -> Result<String, VirtualBoardError> {
+        let report = self.end().map_err(|error| self.stopped(&error))?;
+        self.told.extend(report.log);
+        Ok(std::mem::take(&mut self.told).join("; "))
     }
 
     /// Switches it off.
@@ -281,6 +298,17 @@ impl VirtualBoard {
         let [amplifier] = self.bytes()?;
         let mut sent = vec![0; u16::from_le_bytes(self.bytes()?).into()];
         self.output.read_exact(&mut sent)?;
+        for &byte in &sent {
+            match self.decoder.push::<ToHost<String>>(byte) {
+                Some(ToHost::Answer { outcome: Outcome::Refused(why), .. }) => {
+                    self.told.push(why.to_string());
+                }
+                Some(ToHost::Status(Status { fault: Some(fault), .. })) => {
+                    self.told.push(fault.to_string());
+                }
+                _ => {}
+            }
+        }
         Ok(Sample {
             code: (code != NO_CODE).then_some(code),
             amplifier: amplifier != 0,

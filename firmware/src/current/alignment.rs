@@ -84,6 +84,12 @@ enum State {
     Ended,
 }
 
+/// The part by which the counts of an electrical turn may differ from those of a motor with so many pole pairs: one
+/// more or less differs by twice as much.
+pub const fn tolerance(pole_pairs: u16) -> f32 {
+    TOLERANCE.min(0.5 / (1.0 + pole_pairs as f32))
+}
+
 /// The position of a stop in quarters of a turn.
 const fn quarters(stop: usize) -> u32 {
     (if stop <= FORTH { stop } else { 2 * FORTH - stop }) as u32
@@ -165,8 +171,7 @@ impl Alignment {
         if moved.unsigned_abs() < expected.unsigned_abs() / 8 {
             return Err(AlignmentError::Blocked { moved, expected });
         }
-        // One pole pair more or less differs by twice as much.
-        let tolerance = TOLERANCE.min(0.5 / (1.0 + self.begin.pole_pairs as f32));
+        let tolerance = tolerance(self.begin.pole_pairs);
         if (moved.abs() as f32 - turn).abs() > tolerance * turn {
             return Err(AlignmentError::PolePairs { moved, expected });
         }

@@ -30,7 +30,7 @@ mod regeneration;
 mod response;
 mod supervision;
 
-pub use alignment::{Alignment, AlignmentStep};
+pub use alignment::{Alignment, AlignmentStep, tolerance as alignment_tolerance};
 pub use controller::CurrentController;
 pub use current_loop::CurrentLoop;
 pub use drive::{Drive, DriveError, DriveLimits, Motor, Regeneration, Supply, Winding};

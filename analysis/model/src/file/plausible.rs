@@ -2,6 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use haptic_servo::current::{Winding, alignment_tolerance};
+
 use super::key::{self, Key};
 use super::scene::SceneFile;
 use crate::quantity::significant;
@@ -23,8 +25,9 @@ const FARTHEST_FACE: f64 = 3.0 * TAU;
 
 /// A sentence for each implausible number of a file.
 pub fn warnings(file: &SceneFile) -> Vec<String> {
-    let doubts = [step, linearity, period, inertia, damping, friction, cogging, full_scale, face]
-        .map(|doubt| doubt(file));
+    let doubts =
+        [step, linearity, alignment, period, inertia, damping, friction, cogging, full_scale, face]
+            .map(|doubt| doubt(file));
     doubts.into_iter().flatten().collect()
 }
 
@@ -58,6 +61,23 @@ fn linearity(file: &SceneFile) -> Option<String> {
         key::LINEARITY.path,
         chip.name
     ))
+}
+
+/// A motor may not be aligned by an encoder whose error is as large as that of another number of pole pairs.
+fn alignment(file: &SceneFile) -> Option<String> {
+    let motor = file.motor.filter(|motor| motor.index_offset.is_none())?;
+    let Winding::Brushless { pole_pairs } = motor.motor.winding else { return None };
+    let most = f64::from(alignment_tolerance(pole_pairs));
+    let slope = file.scene.latency.encoder.linearity;
+    (slope > most).then(|| {
+        format!(
+            "`{}` = {slope} is above {}, up to which an alignment tells {pole_pairs} pole pairs from one more: it may end \
+             in the fault alignment-pole-pairs, unless `{}` is stated",
+            key::LINEARITY.path,
+            significant(most, 3),
+            key::INDEX_OFFSET.path
+        )
+    })
 }
 
 fn period(file: &SceneFile) -> Option<String> {
