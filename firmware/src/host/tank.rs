@@ -366,8 +366,8 @@ impl<D: DelayLine<i64>, const LAGS: usize> Tank<D, LAGS> {
         ((codes + half) as i32).clamp(-self.numbers.largest, self.numbers.largest)
     }
 
-    /// The whole codes of a wanted torque in N m beyond the host's largest, with its sign; none of what is no finite
-    /// number.
+    /// The whole codes of a wanted torque in N m beyond the host's largest, with its sign; none of a torque
+    /// that is not finite.
     pub(super) fn beyond(&self, wanted: f32) -> i32 {
         if !wanted.is_finite() {
             return 0;
