@@ -49,8 +49,8 @@ pub enum StreamError {
     )]
     Rate { rate: f64, least: f64, most: f64 },
     #[error(
-        "the function returned a torque of {torque:?} N m at {time} s; it must be a finite number. The torque is \
-         switched off"
+        "the function returned a torque of {torque:?} N m at {time} s; it must be a finite number, in the f32 of the \
+         wire. The torque is switched off"
     )]
     Torque { torque: f64, time: f64 },
 }

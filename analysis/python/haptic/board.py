@@ -48,7 +48,7 @@ class Streamed(TypedDict):
     velocity: NDArray[np.float64]
     """Velocity in rad/s."""
     torque: NDArray[np.float64]
-    """Torque in N m that the board gave of the call before."""
+    """Torque in N m that the board gave of the call before; the first, of the torque before this stream."""
     refused: NDArray[np.float64]
     """Torque in N m that it did not give of that."""
     energy: NDArray[np.float64]

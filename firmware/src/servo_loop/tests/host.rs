@@ -115,7 +115,7 @@ fn a_torque_that_is_no_number_is_zero_and_reported() {
     assert_eq!(run.report().unwrap().invalid, 3);
 }
 
-/// What is beyond is refused, not lost without a word.
+/// The rest is refused, not lost without a word.
 #[test]
 fn a_torque_beyond_the_hosts_largest_is_refused() {
     let mut run = Run::new();
