@@ -254,7 +254,9 @@ impl Connection {
         duration: f64,
         smooth: bool,
     ) -> Result<Bound<'py, PyDict>, BoardFailure> {
-        let most = self.with(py, |link| Ok(link.board().budget.map_or(f64::INFINITY, |budget| budget.torque)))?;
+        let most = self.with(py, |link| {
+            Ok(link.board().budget.map_or(f64::INFINITY, |budget| budget.torque))
+        })?;
         let (mut ticks, mut is_told) = (Vec::new(), [false; 2]);
         let torque = |tick: &StreamTick| {
             if tick.time >= duration {

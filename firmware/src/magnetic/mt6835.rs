@@ -29,30 +29,36 @@ pub const MT6835: Chip = Chip {
 /// Status: the field is too weak. The others are too fast a turn (1) and too low a supply (4).
 const FIELD: u32 = 0b010;
 
-/// The checksums by x^8 + x^2 + x + 1 of the bytes of 24 bits, each with the bytes behind it zero.
-static CHECKSUMS: [[u8; 256]; 3] = {
-    let mut table = [[0; 256]; 3];
-    each!(place in 0..3 => {
-        each!(byte in 0..256 => {
-            let mut rest = (byte as u32) << (24 - 8 * place);
-            each!(bit in 0..24 => {
-                if rest & (1_u32 << 31) >> bit != 0 {
-                    rest ^= (0x107_u32 << 23) >> bit;
-                }
-            });
-            table[place][byte] = rest as u8;
-        });
+/// The remainder by x^8 + x^2 + x + 1 of 24 bits, with eight zeros behind them.
+const fn remainder(content: u32) -> u8 {
+    let mut rest = content << 8;
+    each!(bit in 0..24 => {
+        if rest & (1 << 31) >> bit != 0 {
+            rest ^= (0x107 << 23) >> bit;
+        }
+    });
+    rest as u8
+}
+
+/// Bits of the lower part of an angle; the first word has the upper part on top.
+const LOWER: u32 = 10;
+
+/// The checksums of the upper and of the lower parts of angles without a status, so that one comparison checks a
+/// transfer.
+static OF_UPPER: [u8; 1 << 11] = {
+    let mut table = [0; 1 << 11];
+    each!(upper in 0..1 << 11 => {
+        table[upper] = remainder((upper as u32) << (LOWER + 3));
     });
     table
 };
-
-/// The checksum of 24 bits.
-#[inline(always)]
-fn checksum(content: u32) -> u32 {
-    let [_, first, second, third] = content.to_be_bytes();
-    let of = |place: usize, byte: u8| CHECKSUMS[place][usize::from(byte)];
-    (of(0, first) ^ of(1, second) ^ of(2, third)).into()
-}
+static OF_LOWER: [u8; 1 << LOWER] = {
+    let mut table = [0; 1 << LOWER];
+    each!(lower in 0..1 << LOWER => {
+        table[lower] = remainder((lower as u32) << 3);
+    });
+    table
+};
 
 #[inline(always)]
 fn decode(&[_, first, second]: &Frame) -> Result<u32, ReadingError> {
@@ -61,14 +67,20 @@ fn decode(&[_, first, second]: &Frame) -> Result<u32, ReadingError> {
         // The checksum of zeros is zero.
         return Err(ReadingError::Zeros);
     }
+    let angle = bits >> 11;
+    let lower = (angle % (1 << LOWER)) as usize;
+    let checksum = OF_UPPER[usize::from(first >> 5)] ^ OF_LOWER[lower];
+    if u16::from(checksum) == second & 0x7FF { Ok(angle) } else { Err(error(bits)) }
+}
+
+/// The error of a transfer with a status, or with a wrong checksum.
+#[cold]
+#[inline(never)]
+fn error(bits: u32) -> ReadingError {
     let content = bits >> 8;
-    if checksum(content) != bits & 0xFF {
+    if u32::from(remainder(content)) != bits & 0xFF {
         // The checksum of ones is none.
-        return Err(if bits == u32::MAX { ReadingError::Ones } else { ReadingError::Checksum });
+        return if bits == u32::MAX { ReadingError::Ones } else { ReadingError::Checksum };
     }
-    match content & 0b111 {
-        0 => Ok(content >> 3),
-        status if status & FIELD != 0 => Err(ReadingError::Field),
-        _ => Err(ReadingError::Flag),
-    }
+    if content & FIELD != 0 { ReadingError::Field } else { ReadingError::Flag }
 }

@@ -77,7 +77,8 @@ pub struct HostState {
 impl HostState {
     /// The state of a tick, with a velocity of one count a tick in rad/s.
     pub(super) fn of(taken: &Taken, count_a_tick: f64) -> Self {
-        let Taken { number, tick, count, speed, energy, torque, refused, limit, state, invalid } = *taken;
+        let Taken { number, tick, count, speed, energy, torque, refused, limit, state, invalid } =
+            *taken;
         let state = State::ALL.get(state).copied().unwrap_or_default();
         let velocity = speed * count_a_tick as f32;
         Self { number, tick, count, velocity, energy, torque, refused, limit, state, invalid }
