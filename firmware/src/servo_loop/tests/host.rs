@@ -137,19 +137,6 @@ fn a_torque_beyond_the_hosts_largest_is_refused() {
     assert!(refused > 1e5 && limit == LimitReason::Torque, "{refused}");
 }
 
-/// The reason in a servo that is off, too.
-#[test]
-fn a_servo_that_is_off_refuses_a_torque() {
-    let mut run = Run::booted(Board::new());
-    for torque in [0.3, 0.0] {
-        run.send(torque, 0);
-        assert_eq!(run.tick(FREE), 0.0);
-        let taken = run.report().unwrap();
-        assert!((f64::from(taken.refused) - f64::from(torque)).abs() < STEP, "{taken:?}");
-        assert_eq!(taken.limit == LimitReason::Ramp, torque != 0.0, "{taken:?}");
-    }
-}
-
 /// The hand moves as it gets most from the torque that acts: that of the tick before.
 #[test]
 fn a_hand_gets_no_more_than_the_budget() {
@@ -161,6 +148,8 @@ fn a_hand_gets_no_more_than_the_budget() {
         run.send(0.5, 0);
         let frame = run.bench.tick(count);
         refused += usize::from(frame.limit == LimitReason::Energy);
+        let told = run.report().unwrap();
+        assert_eq!(told.limit == LimitReason::Energy, frame.limit == LimitReason::Energy, "{told:?}");
         let best = acting * 1e-3 / (2.0 * HOST.damping);
         let moved = (best / radians).round();
         count += moved as i32;
@@ -191,6 +180,7 @@ fn a_servo_that_does_not_run_gives_no_torque_and_keeps_the_level() {
     }
     let taken = run.report().unwrap();
     assert!(taken.torque == 0.0 && (taken.refused - 0.4).abs() < STEP as f32, "{taken:?}");
+    assert_eq!(taken.limit, LimitReason::Ramp);
     let left = left_by_hand();
     // The torque fades in whole codes, whose steps are not all the same, and the cap is rounded down.
     let rounded = 0.01 * (HOST.energy - left) + 1e-4 * HOST.energy;
@@ -377,6 +367,7 @@ fn a_hot_bridge_lowers_the_host_before_the_scene() {
         assert_eq!(frame.limit, LimitReason::Torque);
     }
     assert!(taken.torque.abs() < 0.012 && taken.refused < -0.38, "{taken:?}");
+    assert_eq!(taken.limit, LimitReason::Heat);
     let (frames, _) = ticks(&mut run, Some(OutputEvent::Heat(HeatStep::Lower)), 21, PRESSED);
     assert_eq!(frames[20].limit, LimitReason::Heat);
     assert!((torque(&frames[20]) + 0.81).abs() < 0.02, "{frames:?}");
