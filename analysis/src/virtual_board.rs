@@ -127,7 +127,7 @@ pub struct VirtualBoard {
     before: i32,
     /// Of a magnetic encoder's reading at rest: none of a counter.
     rest: Option<Rest>,
-    decoder: Decoder<{ LONGEST_TO_HOST + CHECKSUM }>,
+    decoder: Box<Decoder<{ LONGEST_TO_HOST + CHECKSUM }>>,
     /// Its reasons for refused requests, and its faults.
     told: Vec<String>,
 }
@@ -179,7 +179,7 @@ impl VirtualBoard {
         let output = process.stdout.take().ok_or_else(missing)?;
         let (input, output) = (Some(BufWriter::new(input)), BufReader::new(output));
         let rest = is_magnetic.then(Rest::default);
-        let (decoder, told) = (Decoder::new(), Vec::new());
+        let (decoder, told) = (Box::new(Decoder::new()), Vec::new());
         Ok(Self { process, input, output, count: 0, before: 0, rest, decoder, told })
     }
 
