@@ -391,6 +391,9 @@ impl VerdictReport {
         if let Some(host) = &file.host {
             self.add_host(file, host);
         }
+        if let Err(why) = file.own_bridge() {
+            self.refuse_motor(why);
+        }
         self.supply = regeneration::judge(file);
         let Some(supply) = &self.supply else { return self };
         if !supply.sinks {
@@ -437,6 +440,21 @@ impl VerdictReport {
         );
         self.assumptions.push(beside_host::assumption(host, self.delta));
         self.host = Some(format!("may give {budget}"));
+    }
+
+    /// Refuses a motor that a board's own bridge does not drive: by this sentence, or by a warning beside the
+    /// remedies of a scene that is rejected already.
+    fn refuse_motor(&mut self, why: String) {
+        let sentence = on_board::rejected(&why);
+        let has_remedies = !self.remedies.is_empty() || self.no_remedy.is_some();
+        if self.verdict != Verdict::Certified || has_remedies {
+            self.assumptions.push(sentence.clone());
+            self.warnings.push(sentence);
+        } else {
+            (self.summary, self.message, self.board) = (sentence.clone(), sentence, Some(why));
+        }
+        self.on_board = Some(Verdict::Rejected);
+        (self.is_rendered, self.is_for_a_board) = (false, true);
     }
 
     fn reject_host(&mut self, error: &HostError) {
