@@ -442,16 +442,17 @@ impl VerdictReport {
         self.host = Some(format!("may give {budget}"));
     }
 
-    /// Refuses a motor that a board's own bridge does not drive: by this sentence, or by a warning beside the
-    /// remedies of a scene that is rejected already.
+    /// Refuses a motor that a board's own bridge does not drive: by this sentence, which no remedy answers, or by a
+    /// warning beside those of a scene that is not certified.
     fn refuse_motor(&mut self, why: String) {
         let sentence = on_board::rejected(&why);
-        let has_remedies = !self.remedies.is_empty() || self.no_remedy.is_some();
-        if self.verdict != Verdict::Certified || has_remedies {
+        if self.verdict == Verdict::Certified {
+            (self.summary, self.message, self.board) = (sentence.clone(), sentence, Some(why));
+            (self.remedies, self.changes) = (Vec::new(), Vec::new());
+            (self.matched, self.no_remedy) = (None, None);
+        } else {
             self.assumptions.push(sentence.clone());
             self.warnings.push(sentence);
-        } else {
-            (self.summary, self.message, self.board) = (sentence.clone(), sentence, Some(why));
         }
         self.on_board = Some(Verdict::Rejected);
         (self.is_rendered, self.is_for_a_board) = (false, true);
