@@ -391,6 +391,9 @@ impl VerdictReport {
         if let Some(host) = &file.host {
             self.add_host(file, host);
         }
+        if let Err(why) = file.own_bridge() {
+            self.refuse_motor(why);
+        }
         self.supply = regeneration::judge(file);
         let Some(supply) = &self.supply else { return self };
         if !supply.sinks {
@@ -437,6 +440,22 @@ impl VerdictReport {
         );
         self.assumptions.push(beside_host::assumption(host, self.delta));
         self.host = Some(format!("may give {budget}"));
+    }
+
+    /// Refuses a motor that a board's own bridge does not drive: by this sentence, which no remedy answers, or by a
+    /// warning beside those of a scene that is not certified.
+    fn refuse_motor(&mut self, why: String) {
+        let sentence = on_board::rejected(&why);
+        if self.verdict == Verdict::Certified {
+            (self.summary, self.message, self.board) = (sentence.clone(), sentence, Some(why));
+            (self.remedies, self.changes) = (Vec::new(), Vec::new());
+            (self.matched, self.no_remedy) = (None, None);
+        } else {
+            self.assumptions.push(sentence.clone());
+            self.warnings.push(sentence);
+        }
+        self.on_board = Some(Verdict::Rejected);
+        (self.is_rendered, self.is_for_a_board) = (false, true);
     }
 
     fn reject_host(&mut self, error: &HostError) {

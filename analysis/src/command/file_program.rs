@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use haptic_servo::current::CurrentLoop;
+use haptic_servo::magnetic::Chip;
 use haptic_servo::scene::Scene;
 use haptic_servo::servo::Transducers;
 
@@ -22,8 +23,8 @@ pub struct FileProgram {
     source: String,
     pub text: String,
     is_certified: bool,
-    /// Whether it reads a magnetic encoder.
-    pub is_magnetic: bool,
+    /// The chip of the magnetic encoder that it reads.
+    pub chip: Option<&'static Chip>,
     /// The current loop of the board's own bridge that makes its torques; none where a DAC does.
     pub bridge: Option<(Box<CurrentLoop>, Transducers)>,
 }
@@ -39,13 +40,11 @@ impl FileProgram {
     ) -> Result<Self, CommandError> {
         let failed = |why| CommandError::NoBoardProgram { file: source.to_owned(), why };
         let transducers = file.board_transducers(counts_per_turn, full_scale).map_err(failed)?;
-        let bridge =
-            file.motor.map(|_| file.on_bridge(&transducers)).transpose().map_err(failed)?;
+        let bridge = file.on_bridge(&transducers).map_err(failed)?;
         let text = program::program(file, &transducers, bridge.as_ref(), source).map_err(failed)?;
         let is_certified = file.scene.certify().is_ok();
         let bridge = bridge.map(|bridge| (Box::new(bridge.current_loop), transducers));
-        let (source, is_magnetic) = (source.to_owned(), file.chip.is_some());
-        Ok(Self { source, text, is_certified, is_magnetic, bridge })
+        Ok(Self { source: source.to_owned(), text, is_certified, chip: file.chip, bridge })
     }
 
     /// A program of the examples with the device of a file in place of the paddle.
@@ -55,9 +54,7 @@ impl FileProgram {
         let scene = Program::find(name).map(|program| program.scene);
         let is_certified =
             scene.is_none_or(|scene| Scene { device: file.device, ..scene }.certify().is_ok());
-        let source = name.to_owned();
-        let is_magnetic = file.chip.is_some();
-        Ok(Self { source, text, is_certified, is_magnetic, bridge: None })
+        Ok(Self { source: name.to_owned(), text, is_certified, chip: file.chip, bridge: None })
     }
 
     /// What makes its torques.
@@ -75,7 +72,7 @@ impl FileProgram {
         let file = toolchain.write_scene(self.name(), &self.text)?;
         let built = building(&self.source, || {
             let board = board.map(|board| (board, self.output()));
-            toolchain.build_written(&file, board, format, self.is_magnetic)
+            toolchain.build_written(&file, board, format, self.chip)
         });
         built.map_err(|why| CommandError::FileNotBuilt {
             file: self.source.clone(),

@@ -60,7 +60,7 @@ impl VirtualBoardBuild {
         let toolchain = set_up(Tools::CompilerAndVirtualBoard)?;
         let elf = program.build(&toolchain, Some(board), format)?.path;
         let executable = building("the virtual board", || toolchain.build_virtual_board())?;
-        let (bridge, is_magnetic) = (program.bridge.clone(), program.is_magnetic);
+        let (bridge, is_magnetic) = (program.bridge.clone(), program.chip.is_some());
         Ok(Self { executable, board, elf, bridge, is_magnetic })
     }
 

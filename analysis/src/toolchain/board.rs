@@ -58,6 +58,14 @@ impl BoardModel {
         matches!(self, Self::BG431bEsc1)
     }
 
+    /// Whether it reads the chip of a magnetic encoder beside this output.
+    pub const fn reads_chips(self, output: TorqueOutput) -> bool {
+        matches!(
+            (self, output),
+            (Self::NucleoG474re, TorqueOutput::Dac) | (Self::BG431bEsc1, TorqueOutput::Bridge)
+        )
+    }
+
     /// The board of that name.
     pub fn find(name: &str) -> Result<Self, UnknownBoard> {
         let found = Self::ALL.into_iter().find(|board| board.name() == name);

@@ -7,6 +7,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use haptic_servo::magnetic::Chip;
 use haptic_servo::words;
 
 use super::memory::Memory;
@@ -48,6 +49,15 @@ pub enum BuildError {
         BoardModel::BG431bEsc1
     )]
     NoBridge { board: BoardModel },
+    #[error(
+        "the board {board} does not read the {chip} beside its {}: the {} reads {} beside its DAC, and the {} beside \
+         its bridge, with the table [motor]",
+        match output { TorqueOutput::Bridge => "bridge", TorqueOutput::Dac => "DAC" },
+        BoardModel::NucleoG474re,
+        Chip::NAMES.join(", "),
+        BoardModel::BG431bEsc1
+    )]
+    NoChip { board: BoardModel, output: TorqueOutput, chip: &'static str },
     #[error("cargo could not be started: {0}")]
     NoCargo(#[source] io::Error),
     #[error("{program} does not compile:\n{output}")]
@@ -131,14 +141,25 @@ impl Variant<'static> {
     }
 }
 
-/// The features of a board's programs, and the addition to the names of their files.
-fn board_variant(board: BoardModel, output: TorqueOutput) -> Result<[String; 2], BuildError> {
-    match output {
-        TorqueOutput::Dac => Ok([board.to_string(), format!("-{board}")]),
+/// The features of a board's programs, which may read a chip, and the addition to the names of their files.
+fn board_variant(
+    board: BoardModel,
+    output: TorqueOutput,
+    chip: Option<&Chip>,
+) -> Result<[String; 2], BuildError> {
+    let [features, suffix] = match output {
+        TorqueOutput::Dac => [board.to_string(), format!("-{board}")],
         TorqueOutput::Bridge if board.has_bridge() => {
-            Ok([format!("{board},bridge"), format!("-{board}-bridge")])
+            [format!("{board},bridge"), format!("-{board}-bridge")]
         }
-        TorqueOutput::Bridge => Err(BuildError::NoBridge { board }),
+        TorqueOutput::Bridge => return Err(BuildError::NoBridge { board }),
+    };
+    match chip {
+        Some(&Chip { name: chip, .. }) if !board.reads_chips(output) => {
+            Err(BuildError::NoChip { board, output, chip })
+        }
+        Some(_) => Ok([features + ",magnetic", suffix]),
+        None => Ok([features, suffix]),
     }
 }
 
@@ -191,7 +212,7 @@ impl Toolchain {
         names: &[&str],
         format: NumberFormat,
     ) -> Result<Vec<Program>, BuildError> {
-        let [features, suffix] = board_variant(board, output)?;
+        let [features, suffix] = board_variant(board, output, None)?;
         let variant = Variant::scene(&features, format, &suffix);
         self.scenes_programs(names, &variant)?.into_iter().map(Program::at).collect()
     }
@@ -211,19 +232,16 @@ impl Toolchain {
     }
 
     /// Builds the program in a file of [`write_scene`](Self::write_scene): for a board as if to be flashed,
-    /// or for the emulated board with its log. A magnetic encoder is read by the board alone.
+    /// or for the emulated board with its log. The chip of a magnetic encoder is read by the board alone.
     pub fn build_written(
         &self,
         file: &Path,
         board: Option<(BoardModel, TorqueOutput)>,
         format: NumberFormat,
-        is_magnetic: bool,
+        chip: Option<&Chip>,
     ) -> Result<Program, BuildError> {
         let [features, suffix] = match board {
-            Some((board, output)) => {
-                let [features, suffix] = board_variant(board, output)?;
-                [features + if is_magnetic { ",magnetic" } else { "" }, suffix]
-            }
+            Some((board, output)) => board_variant(board, output, chip)?,
             None => ["board-qemu,log".to_owned(), String::new()],
         };
         let name = file.file_stem().map(|name| name.to_string_lossy()).unwrap_or_default();
@@ -240,7 +258,7 @@ impl Toolchain {
         board: BoardModel,
         output: TorqueOutput,
     ) -> Result<PathBuf, BuildError> {
-        let [features, suffix] = board_variant(board, output)?;
+        let [features, suffix] = board_variant(board, output, None)?;
         let name = match output {
             TorqueOutput::Dac => "on_target",
             TorqueOutput::Bridge => "bridge_load",

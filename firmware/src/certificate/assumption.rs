@@ -61,6 +61,8 @@ pub enum Assumption {
     StepsNotStated,
     /// The same if the controller's response does not end.
     StepsUnbounded,
+    /// The same if the current loop that makes the torque is not known.
+    CurrentLoopNotKnown,
     /// Without a certificate, the effect of the device's friction: the mean speed in rad/s over a tick up to which
     /// friction and damping dissipate at least what the controller adds (equation 33).
     FrictionOnly { friction: f64, speed: f64 },
@@ -87,9 +89,9 @@ impl Assumption {
             | Self::Saturates { bound: Some(_), .. }
             | Self::OneSided { bound: Some(_) }
             | Self::FrictionOnly { .. } => AssumptionStatus::Holds,
-            Self::Limited { full_scale: None, .. } | Self::StepsNotStated => {
-                AssumptionStatus::NotStated
-            }
+            Self::Limited { full_scale: None, .. }
+            | Self::StepsNotStated
+            | Self::CurrentLoopNotKnown => AssumptionStatus::NotStated,
             Self::Limited { torque, full_scale: Some(full_scale) } if torque <= full_scale => {
                 AssumptionStatus::Holds
             }
@@ -214,6 +216,10 @@ impl fmt::Display for Assumption {
             Self::StepsUnbounded => f.write_str(
                 "the steps of encoder, numbers and DAC are not judged: the impulse response of the \
                  controller is not summable, so no bound exists",
+            ),
+            Self::CurrentLoopNotKnown => f.write_str(
+                "no current loop of a board drives this motor, so that the error of the torque at rest is not known: \
+                 a limit cycle is possible",
             ),
             Self::FrictionOnly { friction, speed } => write!(
                 f,
@@ -486,6 +492,7 @@ fn quantisation(scene: &Scene, assessment: &Assessment, steps: &Resolution) -> A
     }
     match QuantizationBound::of(scene, assessment.format, steps) {
         Some(rest) => Assumption::Quantisation(rest),
+        None if steps.lacks_current_loop() => Assumption::CurrentLoopNotKnown,
         None => Assumption::StepsUnbounded,
     }
 }

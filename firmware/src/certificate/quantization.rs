@@ -44,7 +44,7 @@ pub struct Resolution {
     /// Coulomb friction of the device in N m, at the motor.
     pub friction: Option<f64>,
     /// Largest deviation of a current loop's torque from its model, in N m; `None` for an external amplifier
-    /// without such steps.
+    /// without such steps, infinite if the loop is not known.
     pub current: Option<f64>,
     /// Additional deviation of a current loop in N m when the torque changes its sign, until its feedback has
     /// corrected an instant in which the dead time is compensated with the wrong sign.
@@ -68,6 +68,11 @@ impl Resolution {
     pub fn with_current_loop(self, loop_resolution: &CurrentResolution) -> Self {
         let CurrentResolution { deviation, zero_crossing, ripple, .. } = *loop_resolution;
         Self { current: Some(deviation + 0.5 * ripple), crossing: Some(zero_crossing), ..self }
+    }
+
+    /// Whether a current loop makes the torque of which no design is known.
+    pub(super) fn lacks_current_loop(&self) -> bool {
+        self.current == Some(f64::INFINITY)
     }
 
     /// The same with the error of a reading in place of half a count: noise and hysteresis are further steps
@@ -110,8 +115,12 @@ pub struct QuantizationBound {
 
 impl QuantizationBound {
     /// The bound of a scene that runs in a number format. `None` if the controller has no finite peak torque
-    /// per position: if it is unstable, or so near to instability that its response does not end.
+    /// per position: if it is unstable, or so near to instability that its response does not end. `None`, too,
+    /// if the current loop is not known.
     pub fn of(scene: &Scene, format: Format, steps: &Resolution) -> Option<Self> {
+        if steps.lacks_current_loop() {
+            return None;
+        }
         let Peak { norm: peak, in_any_motion } = peak(scene, format)?;
         let steps = &steps.read_by(scene.latency.encoder);
         let anticogging = Anticogged::of(scene, format);

@@ -163,14 +163,20 @@ impl Search {
     /// A search on the device of a scene; `None` without a wall.
     pub fn new(file: &SceneFile, terms: &Terms) -> Option<Self> {
         file.scene.environment.wall()?;
-        let steps = file.steps();
-        Some(Self {
+        let mut search = Self {
             scene: prepared(&file.scene, &Terms { coupling: Choice::Kept, ..*terms }),
             terms: *terms,
             shortest_period: period::SHORTEST,
-            steps,
-            rests: comes_to_rest(&file.scene, &steps) == Some(true),
-        })
+            steps: file.steps(),
+            rests: false,
+        };
+        // The updates and the delay of a bridge's current loop are the search's, not the file's.
+        let [_, latched, ..] = Structure::ALL;
+        if let Some(scene) = search.scene_of(latched, file.scene.timing.period, None) {
+            search.steps = SceneFile { scene, ..file.clone() }.steps();
+        }
+        search.rests = comes_to_rest(&file.scene, &search.steps) == Some(true);
+        Some(search)
     }
 
     /// The same search, whether friction prevents a limit cycle or not.

@@ -29,24 +29,39 @@ pub struct MotorOnBridge {
 const SAME: f64 = 1e-9;
 
 impl SceneFile {
-    /// The file's resolution, for the certificate's assumptions.
+    /// The file's resolution, for the certificate's assumptions: that of a motor without a current loop is not
+    /// known.
     pub fn steps(&self) -> Resolution {
         let Self { encoder_step: encoder, full_scale, friction, .. } = *self;
         let steps = Resolution { encoder, full_scale, friction, ..Resolution::default() };
-        match self.on_bridge(&self.transducers(None, None)) {
-            Ok(bridge) => steps.with_current_loop(&bridge.current_loop.resolution()),
-            Err(_) => steps,
+        match self.own_bridge() {
+            Ok(None) => steps,
+            Ok(Some(bridge)) => steps.with_current_loop(&bridge.current_loop.resolution()),
+            Err(_) => Resolution { current: Some(f64::INFINITY), ..steps },
         }
     }
 
-    /// Its motor on the bridge of the board that has one, with the times and the passivity that the scene states.
+    /// Its motor on the bridge of the board that has one, with the encoder and the full scale of the file; `None`
+    /// without a motor.
+    ///
+    /// # Errors
+    /// As [`Self::on_bridge`], and a sentence about an encoder and a full scale that are missing.
+    pub fn own_bridge(&self) -> Result<Option<MotorOnBridge>, String> {
+        match self.motor {
+            Some(_) => self.on_bridge(&self.board_transducers(None, None)?),
+            None => Ok(None),
+        }
+    }
+
+    /// Its motor on the bridge of the board that has one, with the times and the passivity that the scene states;
+    /// `None` without a motor.
     ///
     /// # Errors
     /// A sentence about the keys that are missing, or that the current loop does not have.
-    pub fn on_bridge(&self, transducers: &Transducers) -> Result<MotorOnBridge, String> {
+    pub fn on_bridge(&self, transducers: &Transducers) -> Result<Option<MotorOnBridge>, String> {
         let Self { scene, motor, supply, .. } = self;
         let Some(FileMotor { motor, lowest_supply, highest_supply, index_offset }) = *motor else {
-            return Err(format!("a board's own bridge needs the motor: set [{}]", key::MOTOR.path));
+            return Ok(None);
         };
         let regeneration = match supply {
             Some(FileSupply::Sinks { .. }) => Regeneration::Sinks,
@@ -105,6 +120,6 @@ impl SceneFile {
                 rounded_down((scene.device.damping - loss).max(0.0), 3)
             ));
         }
-        Ok(MotorOnBridge { current_loop, output })
+        Ok(Some(MotorOnBridge { current_loop, output }))
     }
 }

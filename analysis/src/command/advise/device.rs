@@ -71,6 +71,8 @@ struct Report {
     compensated: Option<f64>,
     /// Keys without which the silent stiffness and the detents are not known.
     missing: Vec<&'static str>,
+    /// Why these are not known of a motor that a board's own bridge does not drive; null where it does.
+    no_bridge: Option<String>,
     /// The largest factor first.
     levers: Vec<Lever>,
     points: Vec<Point>,
@@ -158,8 +160,10 @@ fn report(file: &SceneFile, search: &Search) -> Report {
     let period = file.scene.timing.period;
     let best = search.at(period);
     let silent = search.silent();
-    let bound =
-        |wall: &StiffestWall| QuantizationBound::of(&wall.scene, Format::F64, &file.steps());
+    let of_wall = |wall: &StiffestWall| SceneFile { scene: wall.scene, ..file.clone() };
+    let bound = |wall: &StiffestWall| {
+        QuantizationBound::of(&wall.scene, Format::F64, &of_wall(wall).steps())
+    };
     let rest = best.as_ref().and_then(bound);
     // A wall that is silent anyhow needs no search of its own.
     let felt_silently = |period: f64, certified: Option<&StiffestWall>| match &silent {
@@ -187,6 +191,7 @@ fn report(file: &SceneFile, search: &Search) -> Report {
         detent_torque,
         compensated: compensated(file),
         missing: missing(file),
+        no_bridge: best.as_ref().and_then(|wall| of_wall(wall).own_bridge().err()),
         levers: levers(silent.as_ref().unwrap_or(search), period),
         points: points.collect(),
     }
@@ -197,7 +202,7 @@ fn missing(file: &SceneFile) -> Vec<&'static str> {
     let needed = [
         (&key::DEVICE_FRICTION, file.friction.is_some()),
         (&key::COUNTS_PER_TURN, file.encoder_step.is_some()),
-        (&key::FULL_SCALE, file.steps().full_scale.is_some()),
+        (&key::FULL_SCALE, file.full_scale.is_some()),
     ];
     needed.into_iter().filter(|(_, is_stated)| !is_stated).map(|(key, _)| key.path).collect()
 }
@@ -274,7 +279,9 @@ fn text(report: &Report) -> String {
     let stiffness = |value| number(value, "N m/rad");
     let unknown = || match report.stiffness {
         None => Some("no wall certifies".to_owned()),
-        Some(_) if report.missing.is_empty() => None,
+        Some(_) if report.missing.is_empty() => {
+            report.no_bridge.as_ref().map(|_| "not known".to_owned())
+        }
         Some(_) => Some(format!("not known: state `{}`", report.missing.join("`, `"))),
     };
     let certified = report.stiffness.map_or_else(
@@ -282,7 +289,10 @@ fn text(report: &Report) -> String {
         |felt| format!("{}, {}", stiffness(felt), report.structure.unwrap_or_default()),
     );
     let error = report.torque_error.map_or_else(
-        || unknown().unwrap_or_default(),
+        || match &report.no_bridge {
+            Some(why) => format!("not known: {why}"),
+            None => unknown().unwrap_or_default(),
+        },
         |error| match report.friction {
             Some(friction) => {
                 let [error, friction] = [error, friction].map(|it| number(it, "N m"));

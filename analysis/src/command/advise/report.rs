@@ -134,7 +134,7 @@ pub fn text(answered: &FormatReport) -> String {
                 figure(of.losses.and_then(|it| it.with_encoder).map(|cycle| cycle.torque))
             }),
             ("friction needed", true, |of| {
-                of.rest.map_or_else(|| "none".to_owned(), |it| RoundUp3(it.hum()).to_string())
+                of.rest.map_or_else(|| "not known".to_owned(), |it| RoundUp3(it.hum()).to_string())
             }),
             ("rejected", false, |of| of.rejected.join("; ")),
         ],

@@ -66,7 +66,7 @@ struct Report {
     curves: Vec<Point>,
 }
 
-/// Runs the command; the status is negative if no wall certifies.
+/// Runs the command; the status is negative if no wall certifies, or if no board's bridge drives the motor.
 pub fn run(all: &super::Arguments, arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let file = all.load(&arguments.file)?;
     let is_bridge = file.scene.latency.actuator_updates > 0;
@@ -114,7 +114,7 @@ pub fn run(all: &super::Arguments, arguments: &Arguments) -> Result<CommandStatu
         let silent = silent.map(|wall| silent_in_words(wall.as_ref()));
         text(report, &stiffest, &found.best, &verdict, silent)
     })?;
-    Ok(CommandStatus::Success)
+    Ok(CommandStatus::of(verdict.board.is_none()))
 }
 
 fn report(
@@ -227,6 +227,7 @@ fn text(
         ("wall", Some(wall)),
         ("coupling", Some(coupling)),
         ("margin on a board", verdict.margin_on_board_in_words()),
+        ("not on a board", verdict.board.clone()),
         ("at rest", rest),
         ("silent at rest", silent),
     ];

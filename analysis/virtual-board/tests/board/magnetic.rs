@@ -136,7 +136,7 @@ fn built(name: &str, text: &str) -> PathBuf {
     let written = toolchain.write_scene(name, text).unwrap();
     let board = BoardModel::find(NUCLEO_G474RE.name).unwrap();
     let board = Some((board, TorqueOutput::Dac));
-    let built = toolchain.build_written(&written, board, NumberFormat::F32, true);
+    let built = toolchain.build_written(&written, board, NumberFormat::F32, file().chip);
     built.unwrap_or_else(|error| panic!("{error}")).path
 }
 

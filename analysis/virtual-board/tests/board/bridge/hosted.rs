@@ -20,13 +20,13 @@ fn boot() -> (Bench, CurrentLoop) {
     let text = include_str!("hosted.toml");
     let file = parse("hosted.toml", Format::Toml, text).unwrap_or_else(|error| panic!("{error}"));
     let transducers = file.board_transducers(None, None).unwrap();
-    let bridge = file.on_bridge(&transducers).unwrap();
+    let bridge = file.on_bridge(&transducers).unwrap().unwrap();
     let text = program::program(&file, &transducers, Some(&bridge), "hosted.toml").unwrap();
     let toolchain = prepare(Tools::Compiler).unwrap_or_else(|error| panic!("{error}"));
     let written = toolchain.write_scene("hosted_bridge", &text).unwrap();
     let board = BoardModel::find(B_G431B_ESC1.name).unwrap();
     let board = Some((board, TorqueOutput::Bridge));
-    let built = toolchain.build_written(&written, board, NumberFormat::F32, false);
+    let built = toolchain.build_written(&written, board, NumberFormat::F32, file.chip);
     let elf = built.unwrap_or_else(|error| panic!("{error}")).path;
     let mut bench = Bench::boot_file(&B_G431B_ESC1, &elf, FixedDevice);
     let drive = bridge.current_loop.drive();

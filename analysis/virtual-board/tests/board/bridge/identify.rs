@@ -83,7 +83,7 @@ fn with_chip(program: &str, chip: &Chip) -> PathBuf {
     let (toolchain, name) = (prepare(Tools::Compiler).unwrap(), format!("{program}_by_chip"));
     let written = toolchain.write_scene(&name, &text).unwrap();
     let output = Some((BoardModel::find(B_G431B_ESC1.name).unwrap(), TorqueOutput::Bridge));
-    let built = toolchain.build_written(&written, output, NumberFormat::F32, true);
+    let built = toolchain.build_written(&written, output, NumberFormat::F32, Some(chip));
     built.unwrap_or_else(|error| panic!("{error}")).path
 }
 

@@ -43,13 +43,13 @@ impl Knob {
     fn build(name: &str, text: &str) -> Self {
         let file = parse(name, Format::Toml, text).unwrap_or_else(|error| panic!("{error}"));
         let transducers = file.board_transducers(None, None).unwrap();
-        let bridge = file.on_bridge(&transducers).unwrap();
+        let bridge = file.on_bridge(&transducers).unwrap().unwrap();
         let text = program::program(&file, &transducers, Some(&bridge), name).unwrap();
         let toolchain = prepare(Tools::Compiler).unwrap_or_else(|error| panic!("{error}"));
         let board = BoardModel::find(B_G431B_ESC1.name).unwrap();
         let written = toolchain.write_scene(name, &text).unwrap();
         let output = Some((board, TorqueOutput::Bridge));
-        let built = toolchain.build_written(&written, output, NumberFormat::F32, true);
+        let built = toolchain.build_written(&written, output, NumberFormat::F32, file.chip);
         let program = built.unwrap_or_else(|error| panic!("{error}")).path;
         Self { file, transducers, bridge, program }
     }
