@@ -7,7 +7,7 @@ use std::process::Command;
 use clap::Args;
 
 use super::building::{building, set_up};
-use super::shared_arguments::write;
+use super::shared_arguments::{warned, write};
 use super::status::{CommandError, CommandStatus};
 use crate::explore;
 use crate::file::{self, Format};
@@ -48,7 +48,11 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
 /// The page that starts with this scene.
 pub(super) fn page(scene: Option<&str>) -> Result<String, CommandError> {
     let scene = match scene {
-        Some(name) => file::canonical(file::load_json(name)?),
+        Some(name) => {
+            let (scene, keys) = file::load_with_json(name)?;
+            warned(scene);
+            file::canonical(keys)
+        }
         None => file::as_json("wall.toml", Format::Toml, START)?,
     };
     Ok(explore::page(&module()?, &scene)?)

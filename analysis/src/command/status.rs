@@ -39,6 +39,12 @@ pub enum CommandError {
     #[error("there is no scene {name}: the programs are {programs}, and there is no such file")]
     NoScene { name: String, programs: String },
     #[error(
+        "{path} describes a device, and `identify` needs a record of its motion, in CSV: it measures one with the \
+         board at --port PORT, or simulates this device with --target host (docs/measure.md)",
+        path = path.display()
+    )]
+    NoRecord { path: PathBuf },
+    #[error(
         "{scene} takes no torque of a host: --host is for a scene file with the table [host], and for \
          hosted_wall (docs/host-torque.md)"
     )]

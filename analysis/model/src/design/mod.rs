@@ -4,6 +4,7 @@
 //! The certificate itself judges each value, of a board or of the scene alone. The answer is the last value
 //! that passes, exactly or in three digits on the side that passes, and comes with scenes that certify.
 
+mod detents;
 mod edge;
 mod judge;
 mod quantity;
@@ -15,6 +16,7 @@ use haptic_servo::scene::{Coupling, Scene, TimeRange};
 use crate::chain::Chain;
 use crate::file::SceneFile;
 
+pub use detents::NoDetents;
 pub use judge::{Judge, board_refusal};
 pub use quantity::{Quantity, SAMPLES};
 

@@ -80,11 +80,11 @@ pub struct Found {
 #[derive(Clone, Debug)]
 pub struct Search {
     /// With a wall, and with its own coupling.
-    scene: Scene,
+    pub(super) scene: Scene,
     terms: Terms,
     shortest_period: f64,
     /// The steps of the device, with its friction.
-    steps: Resolution,
+    pub(super) steps: Resolution,
     /// Whether the friction has to prevent a limit cycle at rest, as in the scene of the file.
     rests: bool,
 }
@@ -297,7 +297,12 @@ impl Search {
     }
 
     /// The scene of a structure, with a wall of no stated stiffness.
-    fn scene_of(&self, structure: Structure, period: f64, damper: Option<Damper>) -> Option<Scene> {
+    pub(super) fn scene_of(
+        &self,
+        structure: Structure,
+        period: f64,
+        damper: Option<Damper>,
+    ) -> Option<Scene> {
         let Structure { coupling, is_latched } = structure;
         let mut scene = at_period(&self.scene, period);
         let Environment::Parts(parts) = &mut scene.environment else { return None };
@@ -367,7 +372,7 @@ impl Search {
         Some(Wall { structure, scene, felt, saturates: saturated.is_some() })
     }
 
-    fn passes(&self, scene: &Scene) -> bool {
+    pub(super) fn passes(&self, scene: &Scene) -> bool {
         Judge::Board(self.shortest_period).passes(scene)
             && (!self.rests || comes_to_rest(scene, &self.steps) == Some(true))
     }

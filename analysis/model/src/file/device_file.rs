@@ -73,6 +73,12 @@ pub fn read(source: (&str, &Faults), root: Node) -> Read<DeviceFile> {
     let supply =
         supplied.and_then(|table| table.map(|it| supply(it, Some(f64::INFINITY))).transpose())?;
     let [torque_limit, limits_step, full_scale] = limits?;
+    if let (Some(limit), Some(full_scale)) = (torque_limit, full_scale)
+        && limit > full_scale
+    {
+        let reason = format!("is above `{}` = {full_scale} N m", key::FULL_SCALE.path);
+        return Err(top.conflict(&key::TORQUE_LIMIT, reason));
+    }
     let reading = reading.and_then(|table| table.map(encoder).transpose())?;
     let encoder_step = match &reading {
         Some(reading) => reading.step(&top, limits_step)?,

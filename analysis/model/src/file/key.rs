@@ -273,8 +273,8 @@ keys! {
     /// file may have this table, too. A magnetic encoder reads an older position, and its error over the angle
     /// has a slope.
     READING = other("encoder", "", TABLE), Optional("a quadrature encoder with a perfect disk: all is 0"), "";
-    /// Counts of the encoder in a turn, in place of `limits.counts_per_turn`.
-    READING_COUNTS = other("encoder.counts_per_turn", "counts", POSITIVE),
+    /// Counts of the encoder in a turn, in place of `limits.counts_per_turn`, which states them behind a gear.
+    READING_COUNTS = other("encoder.counts_per_turn", "counts", whole(1, u32::MAX)),
         Optional("`[limits]` states them"), "16384.0";
     /// The chip of a magnetic absolute encoder that the board reads, with its angle as the position of the device's
     /// axis. Its counts need not be stated; the age and the lag must cover the chip's, which docs/encoders.md lists.
@@ -639,6 +639,10 @@ pub const BESIDE: &[&Key] = &[&DRAG];
 /// product of their values. A file that is written has the other key.
 pub const RECIPROCALS: [(&Key, &Key, f64); 2] =
     [(&RATE, &PERIOD, 1.0), (&COUNTS_PER_TURN, &ENCODER_STEP, TAU)];
+
+/// The keys of a device file, which are those of a scene file. Its name is not that of the scene.
+pub const OF_DEVICE_FILE: [&Key; 7] =
+    [&NAME, &DEVICE, &READING, &ANTICOGGING, &LIMITS, &SUPPLY, &MOTOR];
 
 #[cfg(test)]
 mod tests {

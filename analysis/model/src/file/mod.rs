@@ -78,6 +78,17 @@ pub fn load_json(file: &str) -> Result<serde_json::Value, FileError> {
     load_with(file, |root, _| Ok(root.value.into_json()))
 }
 
+/// Reads a scene file to simulate, and as [`as_json`] does; `-` is standard input.
+///
+/// # Errors
+/// As [`load_for`].
+pub fn load_with_json(file: &str) -> Result<(SceneFile, serde_json::Value), FileError> {
+    load_with(file, |root, source| {
+        let json = root.clone().value.into_json();
+        Ok((scene::read(source, root, Purpose::Simulate)?, json))
+    })
+}
+
 /// Reads the device of a device file or of a scene file; `-` is standard input.
 pub fn load_device(file: &str) -> Result<DeviceFile, FileError> {
     load_with(file, |root, source| device_file::read(source, root))

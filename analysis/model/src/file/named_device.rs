@@ -3,22 +3,11 @@
 use std::path::Path;
 
 use super::faults::{Faults, Read, Reported};
-use super::key::{self, Key};
+use super::key::{self, Key, OF_DEVICE_FILE};
 use super::problem::{Fault, Problem};
 use super::source::{self, Format, text_of};
 use super::texts::Texts;
 use super::tree::{Entry, Node, Value};
-
-/// The keys of a device file, which are those of a scene file. Its name is not that of the scene.
-pub const KEYS: [&Key; 7] = [
-    &key::NAME,
-    &key::DEVICE,
-    &key::READING,
-    &key::ANTICOGGING,
-    &key::LIMITS,
-    &key::SUPPLY,
-    &key::MOTOR,
-];
 
 /// The scene with the tables of the device file that it names, whose text is added to `texts`. A name is
 /// relative to the scene's folder, or to the working folder.
@@ -128,9 +117,15 @@ impl Merging<'_, '_> {
 
     fn one(&self, scene: &mut Vec<Entry>, entry: Entry) -> Read<()> {
         let name = entry.name.as_str();
-        if !KEYS.iter().any(|key| key.name() == name) {
-            let keys = KEYS.map(Key::name).join(", ");
-            let unknown = format!(" is not a key of a device file; its keys are {keys}");
+        if !OF_DEVICE_FILE.iter().any(|key| key.name() == name) {
+            let keys = OF_DEVICE_FILE.map(Key::name).join(", ");
+            let unknown = match [key::SERVO, key::ENVIRONMENT].iter().any(|key| key.name() == name) {
+                true => {
+                    " is of a scene file, and a device file is needed: move the tables of the device to a file"
+                        .to_owned()
+                }
+                false => format!(" is not a key of a device file; its keys are {keys}"),
+            };
             return Err(self.wrong(entry.span.start, name, &unknown));
         }
         if name == key::NAME.name() {

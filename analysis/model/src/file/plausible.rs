@@ -11,6 +11,8 @@ use crate::quantity::significant;
 /// The coarsest step of an encoder in rad: Hall sensors have 100 counts a turn and fewer, which is stated
 /// exactly where it is meant.
 const COARSEST_STEP: f64 = 0.15;
+/// The most counts in a turn: those of the finest encoders, of 32 bits.
+const MOST_COUNTS: f64 = 4_294_967_296.0;
 /// The longest period in s at which a hand feels anything but steps.
 const LONGEST_PERIOD: f64 = 0.1;
 /// The largest inertia in kg m^2 and friction in N m of a device that a hand moves, and the largest torque in
@@ -20,6 +22,8 @@ const LARGEST_FRICTION: f64 = 100.0;
 const LARGEST_TORQUE: f64 = 100.0;
 /// The largest damping, in inertias per period: a device stops within a hundredth of a period.
 const LARGEST_DAMPING: f64 = 100.0;
+/// A slow turn in rad/s, against whose damping a motor turns its device.
+const SLOW: f64 = 1.0;
 /// The farthest face in rad, three turns away.
 const FARTHEST_FACE: f64 = 3.0 * TAU;
 
@@ -39,6 +43,13 @@ fn doubt(key: &Key, value: f64, why: &str, meant: f64, of: &str) -> String {
 }
 
 fn step(file: &SceneFile) -> Option<String> {
+    let counts = TAU / file.encoder_step?;
+    if counts > MOST_COUNTS {
+        let counts = significant(counts, 3);
+        return Some(format!(
+            "the encoder has {counts} counts a turn, and the finest have {MOST_COUNTS}"
+        ));
+    }
     let step = file.encoder_step.filter(|&step| step > COARSEST_STEP)?;
     let (meant, of) = match step > TAU {
         true => (TAU / step, "counts a turn"),
@@ -100,13 +111,18 @@ fn inertia(file: &SceneFile) -> Option<String> {
 fn damping(file: &SceneFile) -> Option<String> {
     let (device, period) = (&file.scene.device, file.scene.timing.period);
     let times = device.damping * period / device.inertia;
-    if times <= LARGEST_DAMPING {
+    let motor = file.full_scale.or(file.scene.torque_limit).unwrap_or(f64::INFINITY);
+    let why = if times > LARGEST_DAMPING {
+        format!(
+            "is {} times inertia over period, so that the device stops within a hundredth of a period",
+            significant(times, 2)
+        )
+    } else if device.damping * SLOW > motor {
+        let motor = significant(motor, 3);
+        format!("takes more than the {motor} N m of the motor at {SLOW} rad/s")
+    } else {
         return None;
-    }
-    let why = format!(
-        "is {} times inertia over period, so that the device stops within a hundredth of a period",
-        significant(times, 2)
-    );
+    };
     Some(doubt(&key::DEVICE_DAMPING, device.damping, &why, 1e-3 * device.damping, "mN m s/rad"))
 }
 
@@ -172,6 +188,10 @@ mod tests {
                 ["4096 rad", "`limits.encoder_step` = 0.00153,"],
             ),
             (changed(|file| file.encoder_step = Some(0.36)), ["17 counts", "= 0.00628,"]),
+            (
+                changed(|file| file.encoder_step = Some(6.28e-30)),
+                ["1e30 counts", "the finest have 4294967296"],
+            ),
             (changed(|file| file.friction = Some(49_200.0)), ["49200 N m", "mN m"]),
             (
                 changed(|file| file.cogging = Some(sine(5000.0, 84.0))),
@@ -179,6 +199,12 @@ mod tests {
             ),
             (changed(|file| file.full_scale = Some(300.0)), ["hand holds", "mean 0.3,"]),
             (changed(|file| file.scene.device.damping = 22.0), ["1000 times", "mean 0.022,"]),
+            (
+                changed(|file| {
+                    (file.scene.device.damping, file.full_scale) = (1.0, Some(0.2));
+                }),
+                ["more than the 0.2 N m of the motor at 1 rad/s", "mean 0.001, of 1 mN m s/rad"],
+            ),
             (changed(|file| file.scene.device.inertia = 220.0), ["hand", "mean 2.2e-5,"]),
         ] {
             assert!(parts.iter().all(|part| warning.contains(part)), "{warning}");

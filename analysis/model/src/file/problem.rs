@@ -48,6 +48,12 @@ pub enum Problem {
         /// The parser's message.
         message: String,
     },
+    /// A device file in place of a scene file.
+    #[error(
+        "this is a device file, without [servo] and [environment]: `haptic advise device` says what it can render, \
+         and a scene file, which has both, names it by `device = \"FILE\"`"
+    )]
+    OfDevice,
     /// A key, or its value.
     #[error("{sentence}")]
     OfKey {

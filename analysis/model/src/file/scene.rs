@@ -12,14 +12,15 @@ use super::encoder;
 use super::faults::{Faults, Read, all};
 use super::filter;
 use super::host;
-use super::key::{self, Key};
+use super::key::{self, Key, OF_DEVICE_FILE};
 use super::kind::{self, Kind};
 use super::motor::{FileMotor, motor};
+use super::problem::{Fault, Problem};
 use super::profile::{self, ProfileTable, Shapes};
 use super::section::Section;
 use super::simulation::{self, Simulation};
 use super::supply::{FileSupply, supply};
-use super::tree::Node;
+use super::tree::{Node, Value};
 use super::updates;
 use crate::chain::Chain;
 use crate::device::Hand;
@@ -78,6 +79,10 @@ impl SceneFile {
 
 /// Reads the tables of a parsed file.
 pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<SceneFile> {
+    if is_device_file(&root) {
+        let span = root.span.start..root.span.start;
+        return Err(source.1.report(Fault { span, problem: Problem::OfDevice }));
+    }
     let mut top = Section::new(source, "a scene", &ROOT, root)?;
     let name = top.needed_text(&key::NAME);
     let [device, servo, environment] =
@@ -163,6 +168,13 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
         shapes,
         chip,
     })
+}
+
+/// Whether a file has the table of a device, and no key that a device file has not.
+fn is_device_file(root: &Node) -> bool {
+    let Value::Table(entries) = &root.value else { return false };
+    entries.iter().any(|entry| entry.name == key::DEVICE.name())
+        && entries.iter().all(|entry| OF_DEVICE_FILE.iter().any(|key| key.name() == entry.name))
 }
 
 /// The file as a whole: it has no name, and must be a table.

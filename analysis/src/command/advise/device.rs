@@ -1,14 +1,15 @@
 //! `haptic advise device`: what a motor, an encoder, a rate and an amplifier make possible, before they are
 //! bought.
 
-use std::f64::consts::{FRAC_PI_2, TAU};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use haptic_servo::certificate::{QuantizationBound, passivity_for_anticogging};
 use haptic_servo::environment::{MOST_KNOTS, Wall};
 use haptic_servo::number::Format;
-use haptic_servo::scene::{Coupling, Scene};
+use haptic_servo::period;
+use haptic_servo::scene::{Coupling, Device, Scene};
+use haptic_servo::servo::BuildError;
 use serde::Serialize;
 
 use crate::chart::{self, Data, Picture, has_extension};
@@ -17,6 +18,7 @@ use crate::command::status::{CommandError, CommandStatus};
 use crate::command::value_parsers::positive;
 use crate::design::stiffest::{Search, Wall as StiffestWall};
 use crate::design::{Choice, Judge, Terms};
+use crate::disturbance::Disturbance;
 use crate::file::{self, SceneFile, key};
 use crate::quantity::{rounded, significant};
 use crate::text_table::table_of;
@@ -46,7 +48,8 @@ struct Point {
 #[derive(Debug, Serialize)]
 struct Lever {
     change: &'static str,
-    /// Of the stiffness that is silent at rest, or else of that which certifies.
+    /// Of the stiffness that is silent at rest, or else of that which certifies; infinite, and null in JSON, where
+    /// there is none without the change.
     factor: f64,
 }
 
@@ -57,6 +60,8 @@ struct Report {
     rate: f64,
     /// At the handle, in N m/rad; null if no wall certifies.
     stiffness: Option<f64>,
+    /// The key without which no wall certifies.
+    needed: Option<&'static str>,
     structure: Option<&'static str>,
     /// Largest torque error in N m of that wall at rest; null without counts of an encoder.
     torque_error: Option<f64>,
@@ -67,6 +72,8 @@ struct Report {
     /// Most detents in a turn, and the peak torque of each in N m.
     detents: Option<f64>,
     detent_torque: Option<f64>,
+    /// Why there are none; null where it is not known, either.
+    no_detents: Option<String>,
     /// Part of the cogging whose compensation certifies, at most 1; null without cogging.
     compensated: Option<f64>,
     /// Keys without which the silent stiffness and the detents are not known.
@@ -84,6 +91,8 @@ pub fn run(arguments: &Arguments, answer: &JsonOption) -> Result<CommandStatus, 
         Picture::check_name(output)?;
     }
     let file = with_wall(load(arguments)?);
+    on_a_board(&file)
+        .map_err(|error| CommandError::Failed(format!("{}: {error}", arguments.file).into()))?;
     let Some(search) = Search::new(&file, &TERMS) else {
         return Err(CommandError::NoSuchQuantity { scene: file.name, quantity: "wall" });
     };
@@ -156,6 +165,13 @@ fn with_wall(mut file: SceneFile) -> SceneFile {
     file
 }
 
+/// Checks what no scene on this device changes: a period, a torque limit and counts that a board has.
+fn on_a_board(file: &SceneFile) -> Result<(), BuildError> {
+    let Scene { timing, torque_limit, .. } = file.scene;
+    period::check(timing.period)?;
+    file.transducers(None, None).check(timing, torque_limit)
+}
+
 fn report(file: &SceneFile, search: &Search) -> Report {
     let period = file.scene.timing.period;
     let best = search.at(period);
@@ -178,23 +194,36 @@ fn report(file: &SceneFile, search: &Search) -> Report {
         let silent = felt_silently(period, certified.as_ref());
         Point { rate: rounded(period.recip(), 6), certified: certified.map(|it| it.felt), silent }
     });
-    let (detents, detent_torque) = silent_stiffness.and_then(|it| detents(file, it)).unzip();
+    let torque = detent_torque(file);
+    let detents = silent
+        .as_ref()
+        .filter(|_| silent_stiffness.is_some())
+        .map(|silent| silent.most_detents(torque, period));
+    let (detents, no_detents) = detents.map_or((None, None), |found| (found.ok(), found.err()));
     Report {
         name: file.name.clone(),
         rate: rounded(period.recip(), 6),
         stiffness: best.map(|wall| wall.felt),
+        needed: needed(&file.scene.device),
         structure: best.map(|wall| wall.structure.name()),
         torque_error: file.encoder_step.and(rest).map(|it| it.hum()),
         friction: file.friction,
         silent_stiffness,
         detents,
-        detent_torque,
+        detent_torque: detents.map(|_| torque),
+        no_detents: no_detents.map(|why| why.to_string()),
         compensated: compensated(file),
         missing: missing(file),
         no_bridge: best.as_ref().and_then(|wall| of_wall(wall).own_bridge().err()),
         levers: levers(silent.as_ref().unwrap_or(search), period),
         points: points.collect(),
     }
+}
+
+/// The key of which a device without passivity states 0.
+fn needed(device: &Device) -> Option<&'static str> {
+    let key = if device.damping == 0.0 { key::DEVICE_DAMPING } else { key::PASSIVITY };
+    (device.passivity() == 0.0).then_some(key.path)
 }
 
 /// The keys that a bound on the torque at rest and the friction against it need.
@@ -207,21 +236,12 @@ fn missing(file: &SceneFile) -> Vec<&'static str> {
     needed.into_iter().filter(|(_, is_stated)| !is_stated).map(|(key, _)| key.path).collect()
 }
 
-/// The most detents in a turn with this steepest slope in N m/rad, and the peak torque of each in N m: at least
-/// twice that of friction and of the cogging that nothing opposes, and from rest to peak at least the error of a
-/// reading. `None` where no friction is stated.
-fn detents(file: &SceneFile, slope: f64) -> Option<(f64, f64)> {
-    let disturbance = file.disturbance();
+/// The peak torque in N m of a detent that can be told apart: twice that of friction and of the cogging that nothing
+/// opposes.
+fn detent_torque(file: &SceneFile) -> f64 {
+    let Disturbance { friction, cogging } = file.disturbance();
     let opposed = file.scene.environment.parts().anticogging.map_or(0.0, |learnt| learnt.share);
-    let holds = file.friction? + (1.0 - opposed) * disturbance.cogging.torque();
-    let error = 0.5 * file.encoder_step? * file.scene.latency.encoder.steps();
-    let eta = file.scene.latency.encoder.linearity;
-    // Friction that holds their mean torque through a nonlinear encoder (theory, equation 68) is not there against the
-    // errors at rest; in straight lines they are less steep than this slope.
-    let left = slope - 2.0 * holds * eta / (1.0 - eta) / error;
-    let slope = slope.min(FRAC_PI_2 * left);
-    let count = (slope / (2.0 * holds)).min(TAU / (4.0 * error)).floor();
-    (count >= 1.0).then(|| (count, slope / count))
+    2.0 * (friction + (1.0 - opposed) * cogging.torque())
 }
 
 /// The part of the cogging that can be opposed with all of the device's passivity: of the learnt map, or of the
@@ -267,7 +287,7 @@ fn levers(search: &Search, period: f64) -> Vec<Lever> {
     let mut levers: Vec<_> = same_rate
         .map(|(change, search)| (change, felt(&search, period)))
         .chain([("twice the rate", felt(search, 0.5 * period))])
-        .filter(|_| own > 0.0)
+        .filter(|&(_, felt)| own.max(felt) > 0.0)
         .map(|(change, felt)| Lever { change, factor: felt / own })
         .collect();
     levers.sort_by(|a, b| b.factor.total_cmp(&a.factor));
@@ -285,7 +305,10 @@ fn text(report: &Report) -> String {
         Some(_) => Some(format!("not known: state `{}`", report.missing.join("`, `"))),
     };
     let certified = report.stiffness.map_or_else(
-        || "none".to_owned(),
+        || match report.needed {
+            Some(key) => format!("none: `{key}` is 0, and a device without it is not passive"),
+            None => "none".to_owned(),
+        },
         |felt| format!("{}, {}", stiffness(felt), report.structure.unwrap_or_default()),
     );
     let error = report.torque_error.map_or_else(
@@ -303,12 +326,8 @@ fn text(report: &Report) -> String {
     );
     let detents = report.detents.zip(report.detent_torque).map_or_else(
         || {
-            unknown().unwrap_or_else(|| match report.silent_stiffness {
-                Some(_) => {
-                    "none: friction and cogging hold more than half of their torque".to_owned()
-                }
-                None => "none: no wall is silent".to_owned(),
-            })
+            let why = report.no_detents.as_deref().unwrap_or("no wall is silent");
+            unknown().unwrap_or_else(|| format!("none: {why}"))
         },
         |(count, torque)| format!("{count} a turn, of {}", number(torque, "N m")),
     );
@@ -317,10 +336,16 @@ fn text(report: &Report) -> String {
         0.0 => "nothing of it".to_owned(),
         _ => format!("{} % of it", significant(100.0 * part, 2)),
     });
-    let first = report.levers.first().filter(|lever| lever.factor > 1.005).map_or_else(
-        || "no single change earns more".to_owned(),
-        |lever| format!("{}: {} x", lever.change, significant(lever.factor, 3)),
-    );
+    let first = match (report.needed, report.levers.first()) {
+        (Some(key), _) => format!("`{key}`"),
+        (None, Some(Lever { change, factor: f64::INFINITY })) => {
+            format!("{change}: there is none without")
+        }
+        (None, Some(Lever { change, factor })) if *factor > 1.005 => {
+            format!("{change}: {} x", significant(*factor, 3))
+        }
+        (None, _) => "no single change earns more".to_owned(),
+    };
     let silent = report.silent_stiffness.map_or_else(
         || unknown().unwrap_or_else(|| "no wall is, with this friction".to_owned()),
         stiffness,

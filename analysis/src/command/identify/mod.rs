@@ -38,9 +38,9 @@ pub struct Arguments {
     /// with a table `device` alone
     #[arg(value_name = "FILE", required_unless_present_any = ["target", "port"])]
     pub file: Option<PathBuf>,
-    /// Encoder counts per turn; default with --target: those of FILE or 61440, with --port: those of the board
-    #[arg(long, value_name = "N", value_parser = positive,
-          required_unless_present_any = ["target", "port"], allow_negative_numbers = true)]
+    /// Encoder counts per turn; without a default for a record, with --target: those of FILE or 61440, with --port:
+    /// those of the board
+    #[arg(long, value_name = "N", value_parser = positive, allow_negative_numbers = true)]
     pub counts_per_rev: Option<f64>,
     /// Measure with the board at this address, which runs the program `identify` (`haptic flash identify --device FILE`): /dev/ttyACM0
     /// (@BAUD), tcp://HOST:PORT, unix:PATH. The motor moves the device; nobody may hold it
@@ -193,8 +193,7 @@ struct Report<'a> {
 /// emulated board differs from this machine's.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     if let Some(reference) = arguments.reference_per_rev {
-        let counts = arguments.counts_per_rev.unwrap_or(TRANSDUCERS.counts_per_turn);
-        let file = arguments.file.as_deref().unwrap_or(Path::new("-"));
+        let (file, counts) = recorded(arguments)?;
         return linearity::run(arguments, file, counts, reference);
     }
     // The file of which the turns replace numbers has to be there before a motor turns for minutes.
@@ -293,9 +292,27 @@ fn measured(arguments: &Arguments) -> Result<Measured, CommandError> {
             torque_source: None,
         });
     }
-    let counts_per_turn = stated.unwrap_or(TRANSDUCERS.counts_per_turn);
-    let record = load(file.unwrap_or(Path::new("-")), counts_per_turn)?;
+    let (file, counts_per_turn) = recorded(arguments)?;
+    let record = load(file, counts_per_turn)?;
     Ok(Measured { record, origin: None, counts_per_turn, full_scale: None, torque_source: None })
+}
+
+/// The file of a record, and its counts per turn.
+fn recorded(arguments: &Arguments) -> Result<(&Path, f64), CommandError> {
+    let file = arguments.file.as_deref().unwrap_or(Path::new("-"));
+    is_record(file)?;
+    let missing = "--counts-per-rev N is missing: the encoder's counts per turn in this record";
+    let counts = arguments.counts_per_rev.ok_or_else(|| CommandError::Failed(missing.into()))?;
+    Ok((file, counts))
+}
+
+/// Checks that a file is not that of a device or a scene. No line of a record is a key of these.
+fn is_record(file: &Path) -> Result<(), CommandError> {
+    let keys = (file != Path::new("-")).then(|| file::load_json(&file.to_string_lossy()).ok());
+    match keys.flatten().is_some_and(|keys| keys.get("device").is_some()) {
+        true => Err(CommandError::NoRecord { path: file.to_owned() }),
+        false => Ok(()),
+    }
 }
 
 /// Identifies the device of a recorded file.
@@ -304,6 +321,7 @@ pub fn of_file(
     counts_per_turn: f64,
     reading: &Reading,
 ) -> Result<Identification, CommandError> {
+    is_record(file)?;
     Ok(identify::identify(
         &load(file, counts_per_turn)?,
         &reading.correction(counts_per_turn, SETTLE),
