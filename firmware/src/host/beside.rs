@@ -21,6 +21,12 @@ use crate::transducers::Transducers;
 /// of the torque is not known then.
 const UNKNOWN: u32 = 10;
 
+/// Above the state in a report: why a torque is refused, beside the energy.
+const REASON: u32 = 8;
+const IS_OPEN: u32 = 0;
+const IS_CLOSED: u32 = 1;
+const IS_HOT: u32 = 2;
+
 /// A command in a report: the tick that took it, in the servo's units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Taken {
@@ -401,40 +407,33 @@ impl<const TICKS: usize, const LAGS: usize> Hosted<TICKS, LAGS> {
         }
         self.taken = sent;
         let wanted = f32::from_bits(torque);
-        let (torque, beyond) = (self.tank.in_range(wanted), self.tank.beyond(wanted));
-        if !wanted.is_finite() {
+        let [torque, beyond] = self.tank.codes(wanted).unwrap_or_else(|| {
             self.invalid = self.invalid.saturating_add(1);
-        }
-        let before = (self.stream.wanted(), core::mem::replace(&mut self.beyond, beyond));
+            [0; 2]
+        });
         let is_hot = self.heat.iter().any(|heat| heat.now < heat.cold);
-        let closed = match tick.opening {
-            Some(0) if is_hot => Some(LimitReason::Heat),
-            Some(0) => None,
-            _ => Some(LimitReason::Ramp),
+        let reason = match tick.opening {
+            Some(0) if is_hot => IS_HOT,
+            Some(0) => IS_OPEN,
+            _ => IS_CLOSED,
         };
-        let (wanted, beyond) = if closed.is_some() { (torque, beyond) } else { before };
+        let wanted = if reason == IS_OPEN { self.stream.wanted() } else { torque };
+        let before = core::mem::replace(&mut self.beyond, beyond);
         // On the way to the largest torque, and from there, the wanted torque is within it.
-        let beyond = if wanted.abs() == self.tank.largest() { beyond } else { 0 };
-        let given = self.tank.given();
-        let limit = match closed {
-            _ if wanted == given && beyond == 0 => LimitReason::None,
-            Some(closed) => closed,
-            None if wanted == given => LimitReason::Torque,
-            None => LimitReason::Energy,
-        };
-        let refused = (wanted - given).saturating_add(beyond);
-        let [refused, given] = [refused, given].map(|codes| codes as f32 * self.tank.code());
+        let beyond = if wanted.abs() == self.tank.largest() { before } else { 0 };
+        let codes = [wanted, self.tank.given(), beyond].map(i32::cast_unsigned);
         channel.publish(
             sent,
             [
-                rest & 0xffff,
+                rest & 0xffff | u32::from(self.invalid) << 16,
                 tick.tick,
                 tick.count.cast_unsigned(),
                 self.tank.rounded_energy().to_bits(),
-                given.to_bits(),
-                refused.to_bits(),
-                tick.state | u32::from(limit as u8) << 8,
-                u32::from(self.invalid),
+                self.tank.code().to_bits(),
+                codes[0],
+                codes[1],
+                codes[2],
+                tick.state | reason << REASON,
             ],
         );
         if let Some(opening) = tick.opening {
@@ -584,7 +583,9 @@ impl<const TICKS: usize, const LAGS: usize> BesideServo for Hosted<TICKS, LAGS> 
 
     fn report(channel: &HostWords, reported: &mut Reported) -> Option<Taken> {
         let (command, words) = channel.report_after(reported.number)?;
-        let [number, tick, count, energy, torque, refused, state, invalid] = words;
+        let [number, tick, count, energy, code, wanted, given, beyond, state] = words;
+        let [wanted, given, beyond] = [wanted, given, beyond].map(u32::cast_signed);
+        let torque = |codes: i32| codes as f32 * f32::from_bits(code);
         let count = count.cast_signed();
         let ticks = tick.wrapping_sub(reported.tick);
         let moved = count.wrapping_sub(reported.count) as f32;
@@ -597,11 +598,17 @@ impl<const TICKS: usize, const LAGS: usize> BesideServo for Hosted<TICKS, LAGS> 
             count,
             speed,
             energy: f32::from_bits(energy),
-            torque: f32::from_bits(torque),
-            refused: f32::from_bits(refused),
-            limit: LimitReason::ALL.get((state >> 8) as usize).copied().unwrap_or_default(),
-            state: (state & 0xff) as usize,
-            invalid: invalid as u16,
+            torque: torque(given),
+            refused: torque((wanted - given).saturating_add(beyond)),
+            limit: match state >> REASON {
+                _ if wanted == given && beyond == 0 => LimitReason::None,
+                _ if wanted == given => LimitReason::Torque,
+                IS_OPEN => LimitReason::Energy,
+                IS_CLOSED => LimitReason::Ramp,
+                _ => LimitReason::Heat,
+            },
+            state: (state % (1 << REASON)) as usize,
+            invalid: (number >> 16) as u16,
         })
     }
 

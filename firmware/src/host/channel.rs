@@ -19,7 +19,7 @@ impl HostChannel for () {
 /// A command as words.
 pub(super) type Command = [u32; 2];
 /// A report as words.
-pub(super) type Report = [u32; 8];
+pub(super) type Report = [u32; 9];
 
 /// The last command, and the last report.
 #[derive(Debug)]
@@ -27,7 +27,7 @@ pub struct HostWords {
     commands: [[AtomicU32; 2]; 2],
     /// Commands since the start; wraps.
     sent: AtomicU32,
-    report: [AtomicU32; 8],
+    report: [AtomicU32; 9],
     /// The number of the reported command.
     reported: AtomicU32,
 }
@@ -36,7 +36,7 @@ impl HostChannel for HostWords {
     const EMPTY: Self = Self {
         commands: [const { [const { AtomicU32::new(0) }; 2] }; 2],
         sent: AtomicU32::new(0),
-        report: [const { AtomicU32::new(0) }; 8],
+        report: [const { AtomicU32::new(0) }; 9],
         reported: AtomicU32::new(0),
     };
 }

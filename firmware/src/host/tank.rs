@@ -354,27 +354,19 @@ impl<D: DelayLine<i64>, const LAGS: usize> Tank<D, LAGS> {
         lagging.map_or_else(|| product(command, command), |lagging| lagging.cost(command))
     }
 
-    /// The wanted torque in N m as codes within the host's largest; zero if it is no finite number. A torque
-    /// passes here once, where it arrives, and not in each tick.
+    /// The wanted torque in N m as codes within the host's largest; zero if it is no finite number.
     pub fn in_range(&self, wanted: f32) -> i32 {
-        if !wanted.is_finite() {
-            return 0;
-        }
-        let codes = wanted / self.numbers.code;
-        let half = if codes < 0.0 { -0.5 } else { 0.5 };
-        // The cast saturates.
-        ((codes + half) as i32).clamp(-self.numbers.largest, self.numbers.largest)
+        self.codes(wanted).map_or(0, |[within, _]| within)
     }
 
-    /// The whole codes of a wanted torque in N m beyond the host's largest, with its sign; none of a torque
-    /// that is not finite.
-    pub(super) fn beyond(&self, wanted: f32) -> i32 {
-        if !wanted.is_finite() {
-            return 0;
-        }
-        // The cast saturates.
-        let codes = (wanted / self.numbers.code) as i32;
-        codes - codes.clamp(-self.numbers.largest, self.numbers.largest)
+    /// The same, and the whole codes beyond the largest; `None` if it is no finite number. A torque passes here once,
+    /// where it arrives, and not in each tick.
+    pub(super) fn codes(&self, wanted: f32) -> Option<[i32; 2]> {
+        let codes = wanted / self.numbers.code;
+        let within = |codes: i32| codes.clamp(-self.numbers.largest, self.numbers.largest);
+        // The casts saturate, and the second rounds towards zero.
+        let [nearest, whole] = [codes + 0.5_f32.copysign(codes), codes].map(|codes| codes as i32);
+        wanted.is_finite().then(|| [within(nearest), whole - within(whole)])
     }
 
     /// The largest command in codes.

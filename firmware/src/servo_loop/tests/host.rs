@@ -149,7 +149,11 @@ fn a_hand_gets_no_more_than_the_budget() {
         let frame = run.bench.tick(count);
         refused += usize::from(frame.limit == LimitReason::Energy);
         let told = run.report().unwrap();
-        assert_eq!(told.limit == LimitReason::Energy, frame.limit == LimitReason::Energy, "{told:?}");
+        assert_eq!(
+            told.limit == LimitReason::Energy,
+            frame.limit == LimitReason::Energy,
+            "{told:?}"
+        );
         let best = acting * 1e-3 / (2.0 * HOST.damping);
         let moved = (best / radians).round();
         count += moved as i32;
