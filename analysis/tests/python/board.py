@@ -167,7 +167,9 @@ def pushes():
     with haptic.simulated_board(scene) as simulated, haptic.connect(simulated.port) as board:
         (idle,), streamed = warned(0.2)
         assert idle.startswith("the board is disarmed at 0 s of the stream and gives none of its torques"), idle
-        assert set(streamed["limit"][1:]) == {"ramp"} and np.allclose(streamed["refused"][1:], 0.2, atol=1e-3)
+        # A slow machine may call it again for the torque of zero with which a stream begins.
+        refused = streamed["limit"] == "ramp"
+        assert refused[-1] and np.allclose(streamed["refused"], np.where(refused, 0.2, 0.0), atol=1e-3), streamed
         board.arm()
         while board.status()["state"] != "running":
             time.sleep(0.01)
