@@ -411,9 +411,7 @@ impl VerdictReport {
     fn add_host(&mut self, file: &SceneFile, host: &HostTorque) {
         if self.verdict != Verdict::Certified {
             if !self.remedies.is_empty() {
-                let warning = beside_host::without_host(host);
-                self.assumptions.push(warning.clone());
-                self.warnings.push(warning);
+                self.warn(beside_host::without_host(host));
             }
             return;
         }
@@ -442,6 +440,12 @@ impl VerdictReport {
         self.host = Some(format!("may give {budget}"));
     }
 
+    /// Adds a sentence to the assumptions, and to those that do not hold.
+    fn warn(&mut self, sentence: String) {
+        self.assumptions.push(sentence.clone());
+        self.warnings.push(sentence);
+    }
+
     /// Refuses a motor that a board's own bridge does not drive: by this sentence, which no remedy answers, or by a
     /// warning beside those of a scene that is not certified.
     fn refuse_motor(&mut self, why: String) {
@@ -451,8 +455,7 @@ impl VerdictReport {
             (self.remedies, self.changes) = (Vec::new(), Vec::new());
             (self.matched, self.no_remedy) = (None, None);
         } else {
-            self.assumptions.push(sentence.clone());
-            self.warnings.push(sentence);
+            self.warn(sentence);
         }
         self.on_board = Some(Verdict::Rejected);
         (self.is_rendered, self.is_for_a_board) = (false, true);

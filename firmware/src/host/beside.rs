@@ -421,7 +421,7 @@ impl<const TICKS: usize, const LAGS: usize> Hosted<TICKS, LAGS> {
         let before = core::mem::replace(&mut self.beyond, beyond);
         // On the way to the largest torque, and from there, the wanted torque is within it.
         let beyond = if wanted.abs() == self.tank.largest() { before } else { 0 };
-        let codes = [wanted, self.tank.given(), beyond].map(i32::cast_unsigned);
+        let [wanted, given, beyond] = [wanted, self.tank.given(), beyond].map(i32::cast_unsigned);
         channel.publish(
             sent,
             [
@@ -430,9 +430,9 @@ impl<const TICKS: usize, const LAGS: usize> Hosted<TICKS, LAGS> {
                 tick.count.cast_unsigned(),
                 self.tank.rounded_energy().to_bits(),
                 self.tank.code().to_bits(),
-                codes[0],
-                codes[1],
-                codes[2],
+                wanted,
+                given,
+                beyond,
                 tick.state | reason << REASON,
             ],
         );

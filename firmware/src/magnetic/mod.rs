@@ -14,6 +14,7 @@
 mod as5047p;
 mod as5048a;
 mod as504x;
+mod checksum;
 mod magalpha;
 mod mt6701;
 mod mt6835;

@@ -3,6 +3,7 @@
 //! A transfer of 24 bits has 14 bits of angle, 4 of status and a checksum of 6 over both. It only reads: clock, data,
 //! and the wire that selects the chip.
 
+use super::checksum::Checksum;
 use super::{Chip, Frame, Interface, ReadingError};
 use crate::encoder::CounterWidth;
 use crate::time_range::TimeRange;
@@ -29,40 +30,17 @@ pub const MT6701: Chip = Chip {
 /// Status: the field is too strong (1), too weak (2), or the track is lost (8). The push button (4) is no error.
 const FIELD: u32 = 0b1011;
 
-/// The remainder by x^6 + x + 1 of 18 bits, with six zeros behind them.
-const fn remainder(bits: u32) -> u8 {
-    let mut rest = bits << 6;
-    each!(bit in 0..18 => {
-        if rest & (1 << 23) >> bit != 0 {
-            rest ^= (0x43 << 17) >> bit;
-        }
-    });
-    rest as u8
-}
+/// By x^6 + x + 1.
+const CHECKSUM: Checksum = Checksum { polynomial: 0x43, bits: 18 };
 
 /// Angles in a turn.
 const ANGLES: usize = 1 << 14;
 
 /// The checksum of each angle without a status, so that one comparison checks a transfer: 16 kB.
-static CHECKSUMS: [u8; ANGLES] = {
-    let mut table = [0; ANGLES];
-    each!(angle in 1..ANGLES => {
-        // The remainder of a sum is the sum of the remainders.
-        let lowest = 1 << angle.trailing_zeros();
-        table[angle] = table[angle ^ lowest] ^ remainder((lowest as u32) << 4);
-    });
-    table
-};
+static CHECKSUMS: [u8; ANGLES] = CHECKSUM.table(4);
 
 /// The same by the upper and the lower half of an angle, in 256 bytes.
-const HALVES: [[u8; 128]; 2] = {
-    let mut table = [[0; 128]; 2];
-    each!(half in 0..128 => {
-        table[0][half] = remainder((half as u32) << 11);
-        table[1][half] = remainder((half as u32) << 4);
-    });
-    table
-};
+const HALVES: [[u8; 128]; 2] = [CHECKSUM.table(11), CHECKSUM.table(4)];
 
 /// [`CHECKSUMS`] where flash is short.
 const fn checksum_of_halves(angle: usize) -> u8 {
@@ -76,13 +54,7 @@ fn checksum_of(angle: usize) -> u8 {
 }
 
 /// The same of each status.
-const OF_STATUS: [u8; 16] = {
-    let mut table = [0; 16];
-    each!(status in 0..16 => {
-        table[status] = remainder(status as u32);
-    });
-    table
-};
+const OF_STATUS: [u8; 16] = CHECKSUM.table(0);
 
 #[inline(always)]
 fn decode(&[first, second, _]: &Frame) -> Result<u32, ReadingError> {

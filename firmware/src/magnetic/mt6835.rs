@@ -2,6 +2,7 @@
 //!
 //! After the command of 16 bits come 21 bits of angle, 3 of status and a checksum of 8 over both.
 
+use super::checksum::Checksum;
 use super::{Chip, Frame, Interface, ReadingError};
 use crate::encoder::CounterWidth;
 use crate::time_range::TimeRange;
@@ -29,36 +30,16 @@ pub const MT6835: Chip = Chip {
 /// Status: the field is too weak. The others are too fast a turn (1) and too low a supply (4).
 const FIELD: u32 = 0b010;
 
-/// The remainder by x^8 + x^2 + x + 1 of 24 bits, with eight zeros behind them.
-const fn remainder(content: u32) -> u8 {
-    let mut rest = content << 8;
-    each!(bit in 0..24 => {
-        if rest & (1 << 31) >> bit != 0 {
-            rest ^= (0x107 << 23) >> bit;
-        }
-    });
-    rest as u8
-}
+/// By x^8 + x^2 + x + 1.
+const CHECKSUM: Checksum = Checksum { polynomial: 0x107, bits: 24 };
 
 /// Bits of the lower part of an angle; the first word has the upper part on top.
 const LOWER: u32 = 10;
 
 /// The checksums of the upper and of the lower parts of angles without a status, so that one comparison checks a
 /// transfer.
-static OF_UPPER: [u8; 1 << 11] = {
-    let mut table = [0; 1 << 11];
-    each!(upper in 0..1 << 11 => {
-        table[upper] = remainder((upper as u32) << (LOWER + 3));
-    });
-    table
-};
-static OF_LOWER: [u8; 1 << LOWER] = {
-    let mut table = [0; 1 << LOWER];
-    each!(lower in 0..1 << LOWER => {
-        table[lower] = remainder((lower as u32) << 3);
-    });
-    table
-};
+static OF_UPPER: [u8; 1 << 11] = CHECKSUM.table(LOWER + 3);
+static OF_LOWER: [u8; 1 << LOWER] = CHECKSUM.table(3);
 
 #[inline(always)]
 fn decode(&[_, first, second]: &Frame) -> Result<u32, ReadingError> {
@@ -78,7 +59,7 @@ fn decode(&[_, first, second]: &Frame) -> Result<u32, ReadingError> {
 #[inline(never)]
 fn error(bits: u32) -> ReadingError {
     let content = bits >> 8;
-    if u32::from(remainder(content)) != bits & 0xFF {
+    if u32::from(CHECKSUM.of(content)) != bits & 0xFF {
         // The checksum of ones is none.
         return if bits == u32::MAX { ReadingError::Ones } else { ReadingError::Checksum };
     }
