@@ -14,6 +14,7 @@ use crate::error::{AccessError, NotModelled};
 use crate::magnetic_encoder::MagneticEncoder;
 use crate::meter::Meter;
 use crate::peripheral::basic_timer::BasicTimer;
+use crate::peripheral::checksum::ChecksumUnit;
 use crate::peripheral::clock::{Cause, Clock};
 use crate::peripheral::counter::Counter;
 use crate::peripheral::dac::{Dac, Trigger};
@@ -73,6 +74,8 @@ pub struct VirtualBoard {
     pub spi: Spi,
     /// The detector of edges.
     edges: Edges,
+    /// The unit for checksums.
+    checksum: ChecksumUnit,
     /// What moves its words.
     pub dma: Dma,
     /// Whether a timer's request for a transfer was not served yet.
@@ -128,6 +131,7 @@ impl VirtualBoard {
             magnetic: None,
             spi: Spi::default(),
             edges: Edges::default(),
+            checksum: ChecksumUnit::default(),
             dma: Dma::default(),
             transfer_requested: false,
             dac: Dac::new(chip.dac),

@@ -39,6 +39,8 @@ pub enum Unit {
     DmaMultiplexer,
     /// The detector of edges.
     Edges,
+    /// The unit for checksums.
+    Checksum,
     /// The independent watchdog.
     Watchdog,
     /// A unit of the power stage.
@@ -237,6 +239,7 @@ static G4_MAP: &[MapEntry] = &[
     map_entry(0x4002_0800, "DMAMUX1", Unit::DmaMultiplexer, 0x48, 0x28, 2),
     ungated(0x4002_1000, "RCC", Unit::Clock),
     map_entry(0x4002_2000, "FLASH", Unit::Flash, 0x48, 0x28, 8),
+    map_entry(0x4002_3000, "CRC", Unit::Checksum, 0x48, 0x28, 12),
     map_entry(0x4800_0000, "GPIOA", Unit::Pins(0), 0x4C, 0x2C, 0),
     map_entry(0x4800_0400, "GPIOB", Unit::Pins(1), 0x4C, 0x2C, 1),
     map_entry(0x4800_0800, "GPIOC", Unit::Pins(2), 0x4C, 0x2C, 2),

@@ -27,5 +27,6 @@ pub const AS5047P: Chip = Chip {
     lag: TimeRange::ZERO,
     frozen_after: Some(200),
     ones_are_angle: false,
+    checksum: None,
     decode,
 };

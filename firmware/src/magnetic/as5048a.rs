@@ -23,5 +23,6 @@ pub const AS5048A: Chip = Chip {
     lag: TimeRange::ZERO,
     frozen_after: Some(200),
     ones_are_angle: false,
+    checksum: None,
     decode,
 };

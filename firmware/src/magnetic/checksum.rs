@@ -1,6 +1,7 @@
 //! Checksums of frames, and tables of them: remainders by a polynomial whose coefficients are bits.
 
 /// A checksum over so many bits, with as many zeros behind them as it has itself.
+#[derive(Clone, Copy, Debug)]
 pub struct Checksum {
     /// The coefficients, the highest first; at most 9 of them.
     pub polynomial: u32,
@@ -21,6 +22,12 @@ impl Checksum {
             }
         });
         rest as u8
+    }
+
+    /// The remainder of these bits with their checksum behind them: zero if it is theirs.
+    pub const fn remainder(&self, bits: u32) -> u32 {
+        let own = self.polynomial.ilog2();
+        self.of(bits >> own) as u32 ^ bits & ((1 << own) - 1)
     }
 
     /// The checksum of each number below `N` that has so many zeros behind it. That of a sum is the sum of theirs.

@@ -3,7 +3,7 @@
 //! A transfer has no checksum, no parity and no status, so that only a broken wire is seen: all bits 0, all bits 1,
 //! or the same word for long.
 
-use super::{Chip, Frame, Interface, ReadingError};
+use super::{Chip, Frame, Interface, ReadingError, Remainder};
 use crate::encoder::CounterWidth;
 use crate::time_range::TimeRange;
 
@@ -34,6 +34,7 @@ pub const MA702: Chip = Chip {
     // More than a count of 16 bits of noise, by its resolution.
     frozen_after: Some(200),
     ones_are_angle: true,
+    checksum: None,
     decode,
 };
 
@@ -46,7 +47,7 @@ pub const MA732: Chip = Chip {
 };
 
 #[inline(always)]
-fn decode(&[word, ..]: &Frame) -> Result<u32, ReadingError> {
+fn decode(&[word, ..]: &Frame, _: Remainder) -> Result<u32, ReadingError> {
     match word {
         0 => Err(ReadingError::Zeros),
         u16::MAX => Err(ReadingError::Ones),

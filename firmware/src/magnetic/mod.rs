@@ -23,10 +23,11 @@ mod transfers;
 
 pub use as5047p::AS5047P;
 pub use as5048a::AS5048A;
+pub use checksum::Checksum;
 pub use magalpha::{MA600, MA702, MA732};
 pub use mt6701::MT6701;
 pub use mt6835::MT6835;
-pub use readings::Readings;
+pub use readings::{Readings, Receiver, Rests, Unread};
 pub use transfers::{RISE, TRANSFER_WITHIN, Transfers};
 
 use crate::encoder::CounterWidth;
@@ -92,6 +93,9 @@ impl Interface {
     }
 }
 
+/// The remainder of a transfer's bits by a checksum: [`Checksum::remainder`], or a unit of the board.
+pub type Remainder = fn(&Checksum, u32) -> u32;
+
 /// A question to a chip, and the check of its answer.
 pub type Diagnosis = (Frame, fn(&Frame) -> Result<(), ReadingError>);
 
@@ -119,13 +123,15 @@ pub struct Chip {
     pub is_period_late: bool,
     /// Time constant in s of its filter; zero where it is not known.
     pub lag: TimeRange,
-    /// Equal angles in a row that its noise rules out; `None` if it may be as quiet as that at rest: then nothing in
-    /// its transfers tells a chip that has stopped from a handle that stands still.
+    /// Ticks in a row without a step that its noise rules out; `None` if it may be as quiet as that at rest: then
+    /// nothing in its transfers tells a chip that has stopped from a handle that stands still.
     pub frozen_after: Option<u16>,
     /// Whether all bits 1 are the last angle of a turn, and not only a line that nothing drives.
     pub ones_are_angle: bool,
-    /// The angle of a transfer in counts.
-    pub decode: fn(&Frame) -> Result<u32, ReadingError>,
+    /// The checksum whose remainder [`Self::decode`] asks for.
+    pub checksum: Option<Checksum>,
+    /// The angle of a transfer in counts, with a function for the remainder of its bits.
+    pub decode: fn(&Frame, Remainder) -> Result<u32, ReadingError>,
 }
 
 impl Chip {
@@ -157,6 +163,22 @@ impl Chip {
     /// The chip of this name.
     pub fn find(name: &str) -> Option<&'static Self> {
         Self::ALL.into_iter().find(|chip| chip.name == name)
+    }
+
+    /// The same, and 0 for a chip that may be at rest.
+    pub const fn frozen(&self) -> u16 {
+        match self.frozen_after {
+            Some(ticks) => ticks,
+            None => 0,
+        }
+    }
+
+    /// The angle of a transfer in counts.
+    ///
+    /// # Errors
+    /// If it has none.
+    pub fn angle(&self, frame: &Frame) -> Result<u32, ReadingError> {
+        (self.decode)(frame, Checksum::remainder)
     }
 
     /// Counts in a turn.

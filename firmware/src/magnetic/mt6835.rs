@@ -3,7 +3,7 @@
 //! After the command of 16 bits come 21 bits of angle, 3 of status and a checksum of 8 over both.
 
 use super::checksum::Checksum;
-use super::{Chip, Frame, Interface, ReadingError};
+use super::{Chip, Frame, Interface, ReadingError, Remainder};
 use crate::encoder::CounterWidth;
 use crate::time_range::TimeRange;
 
@@ -24,44 +24,43 @@ pub const MT6835: Chip = Chip {
     // Noise of tens of counts.
     frozen_after: Some(200),
     ones_are_angle: false,
+    checksum: Some(CHECKSUM),
     decode,
 };
 
 /// Status: the field is too weak. The others are too fast a turn (1) and too low a supply (4).
-const FIELD: u32 = 0b010;
+const FIELD: u32 = 0b010 << 8;
+
+/// The status, where the second word is above the first, as they come.
+const STATUS: u32 = 0b111 << 24;
 
 /// By x^8 + x^2 + x + 1.
 const CHECKSUM: Checksum = Checksum { polynomial: 0x107, bits: 24 };
 
-/// Bits of the lower part of an angle; the first word has the upper part on top.
-const LOWER: u32 = 10;
-
-/// The checksums of the upper and of the lower parts of angles without a status, so that one comparison checks a
-/// transfer.
-static OF_UPPER: [u8; 1 << 11] = CHECKSUM.table(LOWER + 3);
-static OF_LOWER: [u8; 1 << LOWER] = CHECKSUM.table(3);
-
+/// One comparison finds a status, a wrong checksum, and bits that are all 0, whose checksum is right: less one, they
+/// have a status. Others less one have the status that they had, unless the first word and the checksum are 0, which a
+/// checksum of the 8 bits that are left is for zeros alone.
 #[inline(always)]
-fn decode(&[_, first, second]: &Frame) -> Result<u32, ReadingError> {
-    let bits = u32::from(first) << 16 | u32::from(second);
-    if bits == 0 {
-        // The checksum of zeros is zero.
-        return Err(ReadingError::Zeros);
+fn decode(&[_, first, second]: &Frame, remainder: Remainder) -> Result<u32, ReadingError> {
+    let words = u32::from(second) << 16 | u32::from(first);
+    let bits = words.rotate_left(16);
+    let rest = remainder(&CHECKSUM, bits);
+    match bits {
+        _ if rest | words.wrapping_sub(1) & STATUS == 0 => Ok(bits >> 11),
+        0 => Err(ReadingError::Zeros),
+        _ => Err(error(bits, rest)),
     }
-    let angle = bits >> 11;
-    let lower = (angle % (1 << LOWER)) as usize;
-    let checksum = OF_UPPER[usize::from(first >> 5)] ^ OF_LOWER[lower];
-    if u16::from(checksum) == second & 0x7FF { Ok(angle) } else { Err(error(bits)) }
 }
 
-/// The error of a transfer with a status, or with a wrong checksum.
+/// The error of a transfer with a status, or with a remainder.
 #[cold]
 #[inline(never)]
-fn error(bits: u32) -> ReadingError {
-    let content = bits >> 8;
-    if u32::from(CHECKSUM.of(content)) != bits & 0xFF {
+fn error(bits: u32, rest: u32) -> ReadingError {
+    match bits {
         // The checksum of ones is none.
-        return if bits == u32::MAX { ReadingError::Ones } else { ReadingError::Checksum };
+        u32::MAX => ReadingError::Ones,
+        _ if rest != 0 => ReadingError::Checksum,
+        _ if bits & FIELD != 0 => ReadingError::Field,
+        _ => ReadingError::Flag,
     }
-    if content & FIELD != 0 { ReadingError::Field } else { ReadingError::Flag }
 }

@@ -2,23 +2,38 @@
 
 use core::hint::cold_path;
 
-use super::{Chip, Frame, ReadingError};
+use super::{Checksum, Chip, Frame, ReadingError, Remainder};
+
+/// A transfer that has no angle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unread {
+    /// The angle before takes its place.
+    Held,
+    /// More in a row have failed than are allowed.
+    Fault(ReadingError),
+}
+
+/// What a board knows of a transfer beside its words.
+pub trait Receiver {
+    /// The remainder of its bits.
+    const REMAINDER: Remainder = Checksum::remainder;
+    /// Whether the data line has fallen in it, asked after a word of zeros.
+    fn has_fallen(&self) -> bool;
+    /// It has failed.
+    fn fail(&self, _chip: &Chip) {}
+}
 
 /// The last angle, and what has come since.
 #[derive(Clone, Debug)]
 pub struct Readings {
-    /// The last angle in counts, with [`FAILED`], [`EQUAL`] or [`NONE`].
+    /// The last angle in counts, with [`FAILED`], or [`NONE`].
     count: u32,
     /// Failed transfers in a row, if the angle says that one has failed: so a good one has nothing to reset.
     failed: u16,
-    /// Equal angles in a row, if the angle says that the last one was as that before, for the same reason.
-    equal: u16,
 }
 
 /// Beside the last angle: the last transfer has failed. No chip has as many bits.
 const FAILED: u32 = 1 << 31;
-/// Beside it: it was as the one before.
-const EQUAL: u32 = 1 << 30;
 /// In its place: there was none yet. In a turn of any chip that is zero.
 const NONE: u32 = 1 << 29;
 
@@ -28,68 +43,52 @@ const NEAR: u32 = 256;
 impl Readings {
     /// No reading yet.
     pub const fn none() -> Self {
-        Self { count: NONE, failed: 0, equal: 0 }
+        Self { count: NONE, failed: 0 }
     }
 
-    /// Takes a transfer, of which so many in a row may fail, as the scene's certificate says; whether it has an angle.
-    /// A failed one is replaced by the angle before. `has_fallen` is asked after a word of zeros: whether the data line
-    /// has fallen in its transfer.
+    /// Takes a transfer, of which so many in a row may fail, as the scene's certificate says.
     ///
     /// # Errors
-    /// If more transfers in a row have failed than are allowed, or if the chip has stopped.
+    /// If it has no angle.
     #[inline(always)]
-    pub fn take(
+    pub fn take<R: Receiver>(
         &mut self,
         chip: &Chip,
         frame: &Frame,
         allowed: u16,
-        has_fallen: impl FnOnce() -> bool,
-    ) -> Result<bool, ReadingError> {
+        receiver: R,
+    ) -> Result<(), Unread> {
         // A word of zeros is an angle, and a handle may rest there. No checksum tells it from a wire at ground, but the
         // line does: it is pulled up, high while the chip is not selected, and falls for such a word. A line that
         // nothing drives is as high as a word of ones. So these are an angle only beside zero, and until the chip
         // counts as frozen.
-        let count = match (chip.decode)(frame) {
+        let count = match (chip.decode)(frame, R::REMAINDER) {
             Ok(count) => count,
-            Err(ReadingError::Zeros) if has_fallen() => {
-                cold_path();
-                0
-            }
             Err(error) => {
                 cold_path();
                 let has_angle = chip.ones_are_angle && self.count & NONE == 0;
-                if error != ReadingError::Ones || !has_angle || !self.is_near_zero(chip) {
-                    return self.fail(error, allowed);
+                match error {
+                    ReadingError::Zeros if receiver.has_fallen() => 0,
+                    ReadingError::Ones if has_angle && self.is_near_zero(chip) => chip.width.mask(),
+                    _ => {
+                        receiver.fail(chip);
+                        return Err(self.fail(error, allowed));
+                    }
                 }
-                chip.width.mask()
             }
         };
-        let mut told = count;
-        if let Some(most) = chip.frozen_after
-            && (count ^ self.count) & !(FAILED | EQUAL) == 0
-        {
-            cold_path();
-            self.equal = if self.count & EQUAL == 0 { 1 } else { self.equal.saturating_add(1) };
-            if self.equal >= most {
-                return Err(ReadingError::Frozen);
-            }
-            told |= EQUAL;
-        }
-        self.count = told;
-        Ok(true)
+        self.count = count;
+        Ok(())
     }
 
-    /// The same for a transfer without an angle.
-    ///
-    /// # Errors
-    /// If more transfers in a row have failed than are allowed.
+    /// Takes a transfer without an angle.
     #[cold]
     #[inline(never)]
-    pub fn fail(&mut self, error: ReadingError, allowed: u16) -> Result<bool, ReadingError> {
+    pub fn fail(&mut self, error: ReadingError, allowed: u16) -> Unread {
         let before = if self.count & FAILED == 0 { 0 } else { self.failed };
         self.failed = before.saturating_add(1);
         self.count |= FAILED;
-        if self.failed > allowed { Err(error) } else { Ok(false) }
+        if self.failed > allowed { Unread::Fault(error) } else { Unread::Held }
     }
 
     /// Whether the last angle is beside zero, or if there was none yet.
@@ -105,5 +104,33 @@ impl Readings {
     #[inline(always)]
     pub const fn count(&self) -> u32 {
         self.count
+    }
+}
+
+/// Ticks without a step, of which the noise of a chip leaves only some in a row.
+#[derive(Clone, Debug, Default)]
+pub struct Rests {
+    /// Such ticks in a row, up to the tick of this number.
+    ticks: u16,
+    last: u32,
+}
+
+impl Rests {
+    /// Takes the number of a tick whose angle is that of the tick before. The servo computes the step anyway, so that
+    /// only a tick without one costs more than a branch.
+    ///
+    /// # Errors
+    /// If as many in a row as are allowed have come before.
+    #[inline(always)]
+    pub const fn take(&mut self, tick: u32, allowed: u16) -> Result<(), ReadingError> {
+        let follows = self.last.wrapping_add(1) == tick;
+        self.ticks = if follows { self.ticks.saturating_add(1) } else { 1 };
+        self.last = tick;
+        if self.ticks > allowed { Err(ReadingError::Frozen) } else { Ok(()) }
+    }
+
+    /// So many numbers belong to no tick: the next one follows the last.
+    pub const fn miss(&mut self, ticks: u32) {
+        self.last = self.last.wrapping_add(ticks);
     }
 }

@@ -7,6 +7,15 @@ fn frame(words: &[u16]) -> Frame {
     frame
 }
 
+/// A data line that has fallen or not.
+struct Falls(bool);
+
+impl Receiver for Falls {
+    fn has_fallen(&self) -> bool {
+        self.0
+    }
+}
+
 /// Chip, words and angle.
 const CASES: &[(&Chip, &[u16], u32)] = &[
     (&MT6701, &[0x0AAF, 0x0019], 0x2abc),
@@ -23,14 +32,14 @@ const CASES: &[(&Chip, &[u16], u32)] = &[
 #[test]
 fn a_frame_has_its_angle() {
     for (chip, words, angle) in CASES {
-        assert_eq!((chip.decode)(&frame(words)), Ok(*angle), "{}", chip.name);
+        assert_eq!(chip.angle(&frame(words)), Ok(*angle), "{}", chip.name);
         let bits = u32::from(chip.interface.word_bits);
         let checked = if *chip.name == *"mt6835" { &[1, 2][..] } else { &[0, 1][..words.len()] };
         let has_check = !chip.name.starts_with("ma");
         for (&word, bit) in checked.iter().flat_map(|word| (0..bits).map(move |bit| (word, bit))) {
             let mut wrong = frame(words);
             wrong[word] ^= 1 << bit;
-            assert_eq!((chip.decode)(&wrong).is_err(), has_check, "{}, bit {bit}", chip.name);
+            assert_eq!(chip.angle(&wrong).is_err(), has_check, "{}, bit {bit}", chip.name);
         }
     }
 }
@@ -39,8 +48,8 @@ fn a_frame_has_its_angle() {
 fn a_wire_that_is_broken_is_no_angle() {
     for chip in Chip::ALL {
         let ones = u16::MAX >> (16 - chip.interface.word_bits);
-        assert_eq!((chip.decode)(&[0; LONGEST]), Err(ReadingError::Zeros), "{}", chip.name);
-        assert_eq!((chip.decode)(&[ones; LONGEST]), Err(ReadingError::Ones), "{}", chip.name);
+        assert_eq!(chip.angle(&[0; LONGEST]), Err(ReadingError::Zeros), "{}", chip.name);
+        assert_eq!(chip.angle(&[ones; LONGEST]), Err(ReadingError::Ones), "{}", chip.name);
     }
 }
 
@@ -49,29 +58,33 @@ fn a_wire_that_is_broken_is_no_angle() {
 fn a_failed_reading_is_an_older_one() {
     let mut readings = Readings::none();
     let word = |angle: u16| frame(&[angle | (angle.count_ones() as u16 % 2) << 15]);
-    let mut take =
-        |frame| readings.take(&AS5048A, &frame, 2, || false).map(|_| readings.count() & 0x3FFF);
+    let mut take = |frame| match readings.take(&AS5048A, &frame, 2, Falls(false)) {
+        Ok(()) | Err(Unread::Held) => Ok(readings.count() & 0x3FFF),
+        fault => fault.map(|()| 0),
+    };
     let lost = frame(&[u16::MAX]);
     assert_eq!(take(word(900)), Ok(900));
     assert_eq!([take(lost), take(lost)], [Ok(900); 2]);
     assert_eq!(take(word(950)), Ok(950));
     assert_eq!([take(lost), take(lost)], [Ok(950); 2]);
-    assert_eq!([take(lost), take(lost)], [Err(ReadingError::Ones); 2]);
+    assert_eq!([take(lost), take(lost)], [Err(Unread::Fault(ReadingError::Ones)); 2]);
     assert_eq!(take(word(960)), Ok(960));
 }
 
 #[test]
 fn only_a_chip_that_is_never_quiet_can_be_told_to_be_frozen() {
-    let takes = |chip: &Chip, words: &[u16]| {
-        let mut readings = Readings::none();
-        let taken = (0..2000).map(|_| readings.take(chip, &frame(words), 0, || false));
-        taken.take_while(Result::is_ok).count()
-    };
-    for (chip, words, _) in CASES {
-        let expected = chip.frozen_after.map_or(2000, usize::from);
-        assert_eq!(takes(chip, words), expected, "{}", chip.name);
-    }
-    assert_eq!(MT6701.frozen_after, None);
+    // Those which say that their noise is above a count.
+    let never_rest = Chip::ALL.map(|chip| chip.frozen() > 0);
+    assert_eq!(never_rest, Chip::ALL.map(|chip| *chip != MT6701));
+    let mut rests = Rests::default();
+    let mut take = |tick| rests.take(tick, 3).is_ok();
+    assert_eq!([8, 9, 10, 11, 12].map(&mut take), [true, true, true, false, false]);
+    // A tick with a step is not told, and begins anew.
+    assert_eq!([14, 15, 16].map(&mut take), [true; 3]);
+    assert!(!take(17));
+    rests.take(20, 3).unwrap();
+    rests.miss(2);
+    assert_eq!([23, 24, 25].map(|tick| rests.take(tick, 3).is_ok()), [true, true, false]);
 }
 
 #[test]
@@ -114,23 +127,37 @@ fn a_transfer_before_an_update_adds_to_the_age() {
     }
 }
 
+/// Words whose first is zero: one less, only zeros have a status that they have not.
+#[test]
+fn no_status_of_an_mt6835_is_hidden_by_zeros() {
+    for second in 0..=u16::MAX {
+        let angle = MT6835.angle(&[0, 0, second]);
+        let [content, checksum] = [second >> 8, second & 0xFF].map(u32::from);
+        let is_angle = content & 0b111 == 0 && u32::from(MT6835_CHECKSUM.of(content)) == checksum;
+        assert_eq!(angle.is_ok(), is_angle && second != 0, "{second:#06x}");
+    }
+}
+
+const MT6835_CHECKSUM: Checksum = Checksum { polynomial: 0x107, bits: 24 };
+
 /// A handle may rest where all bits are equal. A line at ground does not fall, and an open line is told elsewhere.
 #[test]
 fn a_word_of_equal_bits_may_be_an_angle() {
     let takes = |chip: &Chip, first: &[u16], word: u16, has_fallen| {
         let mut readings = Readings::none();
-        let _ = readings.take(chip, &frame(first), 0, || false);
-        let taken = readings.take(chip, &frame(&[word]), 0, || has_fallen);
+        let _ = readings.take(chip, &frame(first), 0, Falls(false));
+        let taken = readings.take(chip, &frame(&[word]), 0, Falls(has_fallen));
         taken.map(|_| readings.count())
     };
-    const ZEROS: Result<u32, ReadingError> = Err(ReadingError::Zeros);
+    const ZEROS: Result<u32, Unread> = Err(Unread::Fault(ReadingError::Zeros));
+    const ONES: Result<u32, Unread> = Err(Unread::Fault(ReadingError::Ones));
     for (chip, near, far) in [
         (&MA702, &[200][..], &[300][..]),
         (&AS5048A, &[3], &[0x8400]),
         (&MT6701, &[0x0000, 0x010C], &[0x0AAF, 0x0019]),
         (&MT6835, &[0xFFFF, 0, 0x0838], &[0xFFFF, 0xAAAA, 0xA804]),
     ] {
-        assert!((chip.decode)(&frame(near)).is_ok() && (chip.decode)(&frame(far)).is_ok());
+        assert!(chip.angle(&frame(near)).is_ok() && chip.angle(&frame(far)).is_ok());
         // Also as the first reading.
         for before in [near, far, &[0]] {
             assert_eq!(takes(chip, before, 0, true), Ok(0), "{}", chip.name);
@@ -138,7 +165,7 @@ fn a_word_of_equal_bits_may_be_an_angle() {
         }
     }
     assert_eq!(takes(&MA702, &[65_400], 65_535, false), Ok(65_535));
-    assert_eq!(takes(&MA702, &[65_000], 65_535, true), Err(ReadingError::Ones));
-    assert_eq!(takes(&MA702, &[0], 65_535, true), Err(ReadingError::Ones));
-    assert_eq!(takes(&AS5048A, &[3], 65_535, true), Err(ReadingError::Ones));
+    assert_eq!(takes(&MA702, &[65_000], 65_535, true), ONES);
+    assert_eq!(takes(&MA702, &[0], 65_535, true), ONES);
+    assert_eq!(takes(&AS5048A, &[3], 65_535, true), ONES);
 }

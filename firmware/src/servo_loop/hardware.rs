@@ -55,9 +55,23 @@ pub trait Hardware {
     /// for one period whose tick is late. A simulated board may omit [`BEGAN_LATE`] if its count is always
     /// that of the period's beginning.
     fn periods_since_last(&mut self) -> u32;
+    /// Both: the periods, then the count. A board whose count has come before it knows the periods need not read it
+    /// again.
+    #[inline(always)]
+    fn sample(&mut self) -> (u32, RawCount) {
+        (self.periods_since_last(), self.count())
+    }
     /// The fault of the encoder's reading of this tick, after [`Self::periods_since_last`] was not 1: a tick with such
     /// a fault counts as late, so that a usual tick does not ask for it. A counter has none.
     fn reading_fault(&mut self) -> Option<Fault> {
+        None
+    }
+    /// Whether the noise of the encoder moves its count, so that [`Self::rested`] has to know each tick without a step.
+    fn never_rests(&self) -> bool {
+        false
+    }
+    /// The fault of an encoder that has stopped, by the number of a tick without a step.
+    fn rested(&mut self, _tick: u32) -> Option<Fault> {
         None
     }
     /// Timer counts since the period of this tick began; at least a period once the next one has

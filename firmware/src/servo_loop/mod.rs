@@ -32,6 +32,8 @@ pub use swap::longest_gap;
 
 pub use crate::output_timing::READ_WITHIN;
 
+use core::hint::cold_path;
+
 use crate::dac::DacCode;
 use crate::energy::EnergyMonitor;
 use crate::fault::Fault;
@@ -155,7 +157,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         frames: &mut impl FrameSink,
     ) {
         // Sampling: the count and its time.
-        let (passed, raw) = (hardware.periods_since_last(), hardware.count());
+        let (passed, raw) = hardware.sample();
         let mut tick = self.tick.wrapping_add(passed);
         self.tick = tick;
         // Each condition is one branch that a usual tick does not take: conditions combined first cost three
@@ -212,6 +214,14 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         }
         // Bookkeeping: energy, requests and states, watchdog, telemetry.
         self.energy.observe::<M>(step, code);
+        if hardware.never_rests() && step == 0 {
+            cold_path();
+            if let Some(fault) = hardware.rested(tick) {
+                self.on_stopped_encoder(fault, hardware, inbox);
+                // Read again rather than kept.
+                pending = inbox.pending();
+            }
+        }
         // A host's due tick is at most the link's.
         let due = self.rendering.host().due().unwrap_or(self.link_deadline);
         if pending != 0 || tick.wrapping_sub(due).cast_signed() >= 0 {

@@ -8,6 +8,7 @@ use crate::core::system::{SYSTEM, pends};
 use crate::error::{AccessError, NotModelled};
 use crate::peripheral::Access;
 use crate::peripheral::basic_timer::BasicTimer;
+use crate::peripheral::checksum::ChecksumUnit;
 use crate::peripheral::counter::Counter;
 use crate::peripheral::dac::Dac;
 use crate::peripheral::dma::Dma;
@@ -172,6 +173,7 @@ impl VirtualBoard {
             Unit::Dma => self.dma.read(offset),
             Unit::DmaMultiplexer => self.dma.read_multiplexer(offset),
             Unit::Edges => self.edges.read(offset, self.fallen()),
+            Unit::Checksum => self.checksum.read(offset),
             Unit::Watchdog => self.watchdog.read(offset),
             Unit::Stage(unit) => {
                 self.advance_power_stage();
@@ -255,6 +257,7 @@ impl VirtualBoard {
             Unit::Dma => self.dma.write(offset, value),
             Unit::DmaMultiplexer => self.dma.write_multiplexer(offset, value),
             Unit::Edges => self.edges.write(offset, value, now),
+            Unit::Checksum => self.checksum.write(offset, value),
             Unit::Watchdog => self.watchdog.write(offset, value, now, self.clock.core()),
             Unit::Stage(unit) => {
                 let Self { power_stage, ports, chip, clock, .. } = self;
@@ -296,6 +299,7 @@ impl VirtualBoard {
             Unit::Spi => self.spi = Spi::default(),
             Unit::Dma | Unit::DmaMultiplexer => self.dma = Dma::default(),
             Unit::Edges => self.edges = Edges::default(),
+            Unit::Checksum => self.checksum = ChecksumUnit::default(),
             Unit::Stage(unit) => self.power_stage.reset_unit(unit),
         }
     }

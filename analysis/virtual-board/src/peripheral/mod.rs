@@ -4,6 +4,7 @@
 pub mod adc;
 pub mod analogue;
 pub mod basic_timer;
+pub mod checksum;
 pub mod clock;
 pub mod counter;
 pub mod dac;

@@ -68,7 +68,7 @@ fn each_driver_reads_its_chip() {
             let before = model.sampled;
             let frame = transfer(chip, model, &chip.command, now);
             let sampled = if chip.is_period_late { before } else { model.sampled };
-            (sampled, (chip.decode)(&frame))
+            (sampled, chip.angle(&frame))
         };
         for now in 1..500 {
             model.turn(if now < 250 { 7919 } else { -104_729 }, 1000 * now);
@@ -87,7 +87,7 @@ fn the_set_up_switches_the_prediction_off() {
     let angle = |mut model: MagneticEncoder| {
         model.turn(50, 1000);
         transfer(chip, &mut model, &compensated, 1000);
-        (chip.decode)(&transfer(chip, &mut model, &compensated, 1000))
+        chip.angle(&transfer(chip, &mut model, &compensated, 1000))
     };
     assert_eq!(angle(MagneticEncoder::find(chip.name, 100).unwrap()), Ok(200));
     assert_eq!(angle(started(chip, 100)), Ok(150));
@@ -116,7 +116,7 @@ fn each_failure_is_told() {
             let mut model = started(chip, 1234);
             model.failure = Some(failure);
             transfer(chip, &mut model, &chip.command, 1);
-            let told = (chip.decode)(&transfer(chip, &mut model, &chip.command, 1));
+            let told = chip.angle(&transfer(chip, &mut model, &chip.command, 1));
             assert_eq!(told.err(), error, "{}: {failure:?}", chip.name);
         }
     }
@@ -236,6 +236,37 @@ fn a_failed_reading_is_held_and_two_are_a_fault() {
         fail(&mut bench, None, 20);
         bench.armed();
     }
+}
+
+/// Of a chip with a checksum that the board's own unit checks, and a noise that never rests: that unit begins anew after
+/// a wrong one, and an angle that stands still is a fault.
+#[test]
+fn a_chip_that_stops_is_a_fault() {
+    let text = WALL.replace("mt6701", "mt6835").replace("noise = 2", "noise = 10");
+    let file = parse("stops.toml", Format::Toml, &text).unwrap_or_else(|error| panic!("{error}"));
+    let mut bench = boot_file(&of_file("stops", &file), FixedDevice, INTO << 7);
+    bench.board_mut().magnetic = MagneticEncoder::find("mt6835", INTO << 7);
+    let fail = |bench: &mut Bench, failure, samples| {
+        let chip = bench.board_mut().magnetic.as_mut().unwrap();
+        (chip.noise, chip.failure) = (10, failure);
+        bench.run(samples);
+    };
+    fail(&mut bench, None, 1);
+    bench.armed();
+    for _ in 0..50 {
+        fail(&mut bench, Some(Failure::Bit(3)), 1);
+        fail(&mut bench, None, 9);
+    }
+    assert_eq!(bench.fault(), None);
+    assert_ne!(bench.last_code(), Some(MID_SCALE));
+    // A reading that fails has no step, too.
+    fail(&mut bench, Some(Failure::Frozen), 100);
+    fail(&mut bench, Some(Failure::Bit(3)), 1);
+    fail(&mut bench, Some(Failure::Frozen), 90);
+    assert_eq!(bench.fault(), None);
+    fail(&mut bench, Some(Failure::Frozen), 12);
+    let error = ReadingError::Frozen as u32;
+    assert_eq!(bench.fault(), Some(Fault::EncoderReading { error, allowed: 199 }));
 }
 
 /// Readings fail by the law of a simulation: the codes are those of the readings before.

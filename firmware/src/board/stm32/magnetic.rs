@@ -20,13 +20,13 @@
 //! (tables of the multiplexer's inputs list it). Between transfers the SPI drives none of its wires, so that each has a
 //! pull to its level at rest.
 
-use core::hint::cold_path;
-use core::sync::atomic::{AtomicU16, Ordering};
+use core::sync::atomic::{AtomicU16, AtomicU32, Ordering};
 
 use cortex_m::peripheral::NVIC;
 use embassy_stm32::interrupt;
 use embassy_stm32::pac;
 use embassy_stm32::pac::bdma::vals::{Dir, Pl, Size};
+use embassy_stm32::pac::crc::vals::Polysize;
 use embassy_stm32::pac::dmamux::regs::Ccr;
 use embassy_stm32::pac::dmamux::vals::Pol;
 use embassy_stm32::pac::gpio::vals::{Moder, Ospeedr, Pupdr};
@@ -38,7 +38,8 @@ use crate::board::isr_cell::IsrCell;
 use crate::encoder::RawCount;
 use crate::fault::Fault;
 use crate::magnetic::{
-    Chip, Frame, Interface, LONGEST, RISE, ReadingError, Readings, TRANSFER_WITHIN,
+    Checksum, Chip, Frame, Interface, LONGEST, RISE, ReadingError, Readings, Receiver, Remainder,
+    TRANSFER_WITHIN, Unread,
 };
 
 /// A pin of the bus, and the alternate function that connects it.
@@ -121,18 +122,20 @@ const ENDING: usize = 8;
 static FALL: u32 = 1 << BUS.input.pin;
 
 /// What a transfer and its reading use: in one place, so that one address reaches all of it.
+#[repr(C, align(4))]
 struct Memory {
-    /// The words of the last transfer.
-    frame: [AtomicU16; LONGEST],
-    /// CR1 of the SPI that begins a transfer, and those that end it.
+    /// CR1 of the SPI that begins a transfer.
     begins: AtomicU16,
+    /// The words of the last transfer; the second and the third are a pair in one place of four bytes.
+    frame: [AtomicU16; LONGEST],
+    /// CR1 of the SPI, as often as it takes to end a transfer.
     ends: [AtomicU16; ENDING],
     reader: IsrCell<Reader>,
 }
 
 static MEMORY: Memory = Memory {
-    frame: [const { AtomicU16::new(0) }; LONGEST],
     begins: AtomicU16::new(0),
+    frame: [const { AtomicU16::new(0) }; LONGEST],
     ends: [const { AtomicU16::new(0) }; ENDING],
     reader: IsrCell::empty(),
 };
@@ -177,12 +180,30 @@ fn take_fault() -> Option<Fault> {
     taken
 }
 
-/// Whether the chip's data line has fallen since the transfer began. It is pulled up, and nothing drives it while the
-/// chip is not selected: so a word of zeros begins with a fall. That stays in the detector of edges, whose interrupt
-/// the core does not enable (RM0440, EXTI).
+/// The line's detector of edges, and the unit for checksums.
+struct Units;
+
+impl Receiver for Units {
+    const REMAINDER: Remainder = remainder;
+
+    /// The line is pulled up, and nothing drives it while the chip is not selected: so a word of zeros begins with a
+    /// fall. That stays in the detector, whose interrupt the core does not enable (RM0440, EXTI).
+    #[inline(always)]
+    fn has_fallen(&self) -> bool {
+        pac::EXTI.pr(0).read().0 & FALL != 0
+    }
+
+    #[inline(always)]
+    fn fail(&self, chip: &Chip) {
+        begin_checksum(chip);
+    }
+}
+
+/// The remainder by the unit, which begins at zero, where each transfer without an error leaves it.
 #[inline(always)]
-fn has_fallen() -> bool {
-    pac::EXTI.pr(0).read().0 & FALL != 0
+fn remainder(_: &Checksum, bits: u32) -> u32 {
+    pac::CRC.dr32().write_value(bits);
+    pac::CRC.dr32().read()
 }
 
 /// Takes the reading of the transfer that has ended since the last call, for any interrupt. Without such a transfer, or
@@ -204,35 +225,45 @@ fn left() -> usize {
 
 #[cold]
 #[inline(never)]
-fn missing(setup: &'static Setup) -> Result<bool, ReadingError> {
+fn missing(setup: &'static Setup) -> Result<(), Unread> {
     restart(setup.chip, &[]);
-    reader().readings.fail(ReadingError::Missing, setup.dropped)
+    Err(reader().readings.fail(ReadingError::Missing, setup.dropped))
 }
 
 /// The same at the end of a transfer.
 #[inline(always)]
 pub fn take_ended(setup: &'static Setup, on_fault: impl FnOnce()) -> bool {
+    note(take_words(setup), setup, on_fault)
+}
+
+/// The reading of the words that are there.
+#[inline(always)]
+fn take_words(setup: &'static Setup) -> Result<(), Unread> {
     acknowledge();
-    let frame = received(setup.chip.interface.words);
-    note(reader().readings.take(setup.chip, &frame, setup.dropped, has_fallen), setup, on_fault)
+    let (Setup { chip, dropped, .. }, readings) = (setup, &mut reader().readings);
+    readings.take(chip, &received(chip.interface.words), *dropped, Units)
 }
 
 /// Whether a reading has a tick. Without one, the next tick finds that a period has been missed.
 #[inline(always)]
-fn note(taken: Result<bool, ReadingError>, setup: &'static Setup, on_fault: impl FnOnce()) -> bool {
+fn note(taken: Result<(), Unread>, setup: &'static Setup, on_fault: impl FnOnce()) -> bool {
     match taken {
-        Ok(is_new) => is_new || !setup.leaves_out,
-        Err(error) => {
-            cold_path();
-            fail(error);
-            on_fault();
-            if error == ReadingError::Flag {
-                // The flag of some chips stays until it is read.
-                restart(setup.chip, setup.chip.set_up);
-            }
-            true
-        }
+        Ok(()) => true,
+        Err(unread) => note_unread(unread, setup, on_fault),
     }
+}
+
+#[cold]
+#[inline(never)]
+fn note_unread(unread: Unread, setup: &'static Setup, on_fault: impl FnOnce()) -> bool {
+    let Unread::Fault(error) = unread else { return !setup.leaves_out };
+    fail(error);
+    on_fault();
+    if error == ReadingError::Flag {
+        // The flag of some chips stays until it is read.
+        restart(setup.chip, setup.chip.set_up);
+    }
+    true
 }
 
 #[cold]
@@ -256,7 +287,7 @@ fn acknowledge() {
 pub fn take_again(elapsed: impl Fn() -> u32) {
     /// Counts after the update at which the chip is surely selected.
     const SELECTED: u32 = 170;
-    let Reader { readings, fault, setup, .. } = reader();
+    let setup = reader().setup;
     let (chip, words) = (setup.chip, setup.chip.interface.words);
     let clock = 2_u32 << divider(chip.interface).to_bits();
     // Half a word less: the time of any words but all is shorter.
@@ -272,11 +303,11 @@ pub fn take_again(elapsed: impl Fn() -> u32) {
     };
     acknowledge();
     NVIC::unpend(interrupt::DMA1_CHANNEL1);
-    *fault = None;
+    reader().fault = None;
     if !is_in_step {
         restart(chip, &[]);
         fail(ReadingError::Missing);
-    } else if let Err(error) = readings.take(chip, &received(words), setup.dropped, has_fallen) {
+    } else if let Err(Unread::Fault(error)) = take_words(setup) {
         fail(error);
     }
 }
@@ -316,9 +347,15 @@ fn restart(chip: &'static Chip, before: &[Frame]) {
 /// SPE of CR1.
 const SPE: u32 = 1 << 6;
 
-/// The words of the last transfer.
+/// The words of the last transfer. Of the longest the first, which answers nothing, is left out.
 #[inline(always)]
 fn received(words: usize) -> Frame {
+    if words == LONGEST {
+        // SAFETY: the place of both, by the order of the fields; only the DMA writes it, and not at this time.
+        let pair = unsafe { AtomicU32::from_ptr(MEMORY.frame[1].as_ptr().cast()) };
+        let pair = pair.load(Ordering::Relaxed);
+        return [0, pair as u16, (pair >> 16) as u16];
+    }
     let word = |at: usize| if at < words { MEMORY.frame[at].load(Ordering::Relaxed) } else { 0 };
     core::array::from_fn(word)
 }
@@ -329,6 +366,7 @@ pub fn set_up(setup: &'static Setup) {
     let Setup { chip, dropped, .. } = *core::hint::black_box(setup);
     let words = chip.interface.words;
     connect(chip);
+    begin_checksum(chip);
     cortex_m::asm::delay((chip.start_up * TIMER_CLOCK) as u32);
     for frame in chip.set_up {
         exchange(frame, words);
@@ -343,7 +381,7 @@ pub fn set_up(setup: &'static Setup) {
     pac::EXTI.pr(0).write(|w| w.0 = FALL);
     // A failure here is one of the first tick's, too.
     let mut readings = Readings::none();
-    let _ = readings.take(chip, &exchange(&chip.command, words), dropped, has_fallen);
+    let _ = readings.take(chip, &exchange(&chip.command, words), dropped, Units);
     // SAFETY: the interrupt that uses it is not enabled yet.
     unsafe { MEMORY.reader.init(Reader { readings, fault: None, unfit, setup }) };
     if let Some(error) = unfit {
@@ -431,6 +469,21 @@ fn connect(chip: &Chip) {
     pac::SYSCFG.exticr(pin / 4).modify(|w| w.set_exti(pin % 4, number as u8));
     pac::EXTI.ftsr(0).modify(|w| w.set_line(pin, true));
     pac::EXTI.imr(0).modify(|w| w.set_line(pin, true));
+}
+
+/// The unit for checksums divides by that of a chip, and begins at zero (RM0440, CRC).
+#[cold]
+#[inline(never)]
+fn begin_checksum(chip: &Chip) {
+    let Some(Checksum { polynomial, .. }) = chip.checksum else { return };
+    pac::RCC.ahb1enr().modify(|w| w.set_crcen(true));
+    let _ = pac::RCC.ahb1enr().read();
+    pac::CRC.init().write_value(0);
+    pac::CRC.pol().write_value(polynomial & 0xFF);
+    pac::CRC.cr().write(|w| {
+        w.set_polysize(Polysize::POLYSIZE8);
+        w.set_reset(true);
+    });
 }
 
 /// The channels, which move nothing yet.
@@ -524,6 +577,9 @@ macro_rules! board_encoder {
             };
 
         const ENCODER: &$crate::board::stm32::magnetic::Setup = &ENCODER_SETUP;
+
+        /// Ticks without a step of a chip that has stopped.
+        const FROZEN: u16 = $chip.frozen();
     };
 }
 

@@ -19,6 +19,8 @@ use crate::encoder::RawCount;
 #[cfg(any(feature = "bridge", feature = "magnetic"))]
 use crate::fault::Fault;
 use crate::fault::FaultRecord;
+#[cfg(feature = "magnetic")]
+use crate::magnetic::Rests;
 use crate::output_timing::OutputTiming;
 use crate::period;
 use crate::reset::ResetCause;
@@ -28,20 +30,28 @@ use crate::servo_loop::Hardware;
 #[cfg(feature = "bridge")]
 use crate::servo_loop::OutputEvent;
 
-/// The registers of the servo's interrupt.
-pub struct Registers {
+/// The registers of the servo's interrupt. The encoder has stopped after `FROZEN` ticks without a step; 0 for one that
+/// may rest.
+pub struct Registers<const FROZEN: u16 = 0> {
     pace: Pace,
     output: Output,
+    #[cfg(feature = "magnetic")]
+    rests: Rests,
 }
 
-impl Registers {
+impl<const FROZEN: u16> Registers<FROZEN> {
     /// Prepares the pace of the servo and the torque output; neither runs yet.
     ///
     /// # Errors
     /// If the board cannot pace the period in s.
     pub fn new(setup: Setup, period: f64, timing: OutputTiming) -> Result<Self, BuildError> {
         let (output, pace) = Output::new(setup, period, timing)?;
-        Ok(Self { pace, output })
+        Ok(Self {
+            pace,
+            output,
+            #[cfg(feature = "magnetic")]
+            rests: Rests::default(),
+        })
     }
 
     /// Starts the timers. The servo's interrupt must be enabled within a period.
@@ -49,6 +59,23 @@ impl Registers {
         #[cfg(feature = "magnetic")]
         magnetic::start(cfg!(not(feature = "bridge")));
         self.output.start(&mut self.pace, timing);
+    }
+
+    /// After missed updates, or where the tick begins late, which may be in the transfer of the next update.
+    #[cfg(feature = "magnetic")]
+    #[cold]
+    #[inline(never)]
+    fn after_gap(&mut self, passed: u32) {
+        if FROZEN > 0 {
+            self.rests.miss(passed.saturating_sub(1));
+        }
+        #[cfg(not(feature = "bridge"))]
+        {
+            self.pace.doubt(false);
+            if passed != BEGAN_LATE {
+                magnetic::take_again(|| self.pace.elapsed());
+            }
+        }
     }
 
     /// Takes the reading of the transfer that has ended; whether there is a tick with it.
@@ -59,7 +86,7 @@ impl Registers {
     }
 }
 
-impl Hardware for Registers {
+impl<const FROZEN: u16> Hardware for Registers<FROZEN> {
     #[inline(always)]
     fn count(&mut self) -> RawCount {
         output::count()
@@ -89,6 +116,20 @@ impl Hardware for Registers {
         magnetic::fault()
     }
 
+    #[cfg(feature = "magnetic")]
+    #[inline(always)]
+    fn never_rests(&self) -> bool {
+        FROZEN > 0
+    }
+
+    #[cfg(feature = "magnetic")]
+    #[inline(always)]
+    fn rested(&mut self, tick: u32) -> Option<Fault> {
+        let allowed = FROZEN - 1;
+        let error = self.rests.take(tick, allowed).err()?;
+        Some(Fault::EncoderReading { error: error as u32, allowed: allowed.into() })
+    }
+
     #[cfg(feature = "bridge")]
     fn start_up_ticks(&self) -> u32 {
         self.output.start_up_ticks()
@@ -107,14 +148,22 @@ impl Hardware for Registers {
     #[inline(always)]
     fn periods_since_last(&mut self) -> u32 {
         let passed = self.pace.begun_by(output::period_began());
-        #[cfg(all(feature = "magnetic", not(feature = "bridge")))]
+        #[cfg(feature = "magnetic")]
         if passed != 1 {
-            self.pace.doubt(false);
-            if passed != BEGAN_LATE {
-                magnetic::take_again(|| self.pace.elapsed());
-            }
+            self.after_gap(passed);
         }
         passed
+    }
+
+    /// The reading of the transfer, or of that after it.
+    #[cfg(all(feature = "magnetic", not(feature = "bridge")))]
+    #[inline(always)]
+    fn sample(&mut self) -> (u32, RawCount) {
+        let count = self.count();
+        match self.periods_since_last() {
+            1 => (1, count),
+            passed => (passed, self.count()),
+        }
     }
 
     #[inline(always)]
@@ -138,7 +187,7 @@ impl Hardware for Registers {
     }
 }
 
-impl Startup for Registers {
+impl<const FROZEN: u16> Startup for Registers<FROZEN> {
     #[cfg(not(feature = "magnetic"))]
     fn zero_encoder(&mut self) {
         ENCODER.zero();

@@ -40,7 +40,7 @@ pub const TICK: pac::Interrupt = pac::Interrupt::TIM6_DAC;
 pub const TICK: pac::Interrupt = pac::Interrupt::DMA1_CHANNEL1;
 
 /// The state of the servo's interrupt.
-pub type ServoCell<E, N, M> = IsrCell<ServoIsr<Registers, E, N, M>>;
+pub type ServoCell<E, N, M, const FROZEN: u16> = IsrCell<ServoIsr<Registers<FROZEN>, E, N, M>>;
 
 /// The link to the host, for the task below the servo.
 pub type HostLink<E, N, M> = Link<Serial, E, N, M>;
@@ -52,9 +52,9 @@ pub type LinkCell<E, N, M> = StaticCell<HostLink<E, N, M>>;
 pub type Task<E, N, M, S> = fn(&'static mut HostLink<E, N, M>) -> Result<SpawnToken<S>, SpawnError>;
 
 /// The statics of a program, with its scene's types.
-pub struct Statics<E: Rendering<N> + 'static, N: Number, M: 'static> {
+pub struct Statics<E: Rendering<N> + 'static, N: Number, M: 'static, const FROZEN: u16> {
     /// State of the servo's interrupt.
-    pub servo: &'static ServoCell<E, N, M>,
+    pub servo: &'static ServoCell<E, N, M, FROZEN>,
     /// The mailbox between the interrupt and the task below.
     pub mailbox: &'static MailboxCell<E, N, M>,
     /// The task's link to the host.
@@ -66,10 +66,10 @@ pub struct Statics<E: Rendering<N> + 'static, N: Number, M: 'static> {
 }
 
 /// Runs a scene: its servo in the pacing timer's interrupt, and the host's `task` below it.
-pub fn run<E, N, M, S>(
+pub fn run<E, N, M, S, const FROZEN: u16>(
     name: &'static str,
     program: Program<E>,
-    statics: Statics<E, N, M>,
+    statics: Statics<E, N, M, FROZEN>,
     task: Task<E, N, M, S>,
 ) -> !
 where
@@ -110,10 +110,10 @@ pub const fn with_board_counter<E: Copy>(program: Program<E>) -> Program<E> {
 /// stack.
 #[inline(never)]
 #[expect(clippy::mut_from_ref, reason = "the reference is to a static that is initialised once")]
-fn bring_up<E, N, M>(
+fn bring_up<E, N, M, const FROZEN: u16>(
     name: &'static str,
     program: Program<E>,
-    statics: Statics<E, N, M>,
+    statics: Statics<E, N, M, FROZEN>,
 ) -> &'static mut HostLink<E, N, M>
 where
     E: Tunable<N> + SupportsTiming<M>,
@@ -158,7 +158,11 @@ impl<E: Tunable<N> + SupportsTiming<M>, N: Number, M: OutputMode> HostLink<E, N,
 }
 
 /// The registers of the servo's interrupt for a period in s; ends the program if the period is invalid.
-pub fn registers(setup: output::Setup, seconds: f64, timing: OutputTiming) -> Registers {
+pub fn registers<const FROZEN: u16>(
+    setup: output::Setup,
+    seconds: f64,
+    timing: OutputTiming,
+) -> Registers<FROZEN> {
     Registers::new(setup, seconds, timing).unwrap_or_else(|_| {
         let (shortest, longest) = (periods::SHORTEST, periods::LONGEST);
         defmt::error!("the period of {} s is not between {} and {} s", seconds, shortest, longest);
@@ -272,7 +276,7 @@ macro_rules! board_program {
         const BOARD_PROGRAM: $crate::boot::Program<$environment> =
             $crate::board::stm32::with_board_counter($program);
 
-        static ISR_STATE: $crate::board::stm32::ServoCell<$environment, $number, ProgramMode> =
+        static ISR_STATE: $crate::board::stm32::ServoCell<$environment, $number, ProgramMode, FROZEN> =
             $crate::board::isr_cell::IsrCell::empty();
         static MAILBOX: $crate::board::isr_cell::MailboxCell<$environment, $number, ProgramMode> =
             $crate::__private::static_cell::StaticCell::new();
@@ -329,6 +333,8 @@ macro_rules! board_encoder {
         $crate::board_filter!($transducers);
 
         const ENCODER: $crate::board::input_filter::InputFilter = FILTER;
+
+        const FROZEN: u16 = 0;
     };
     ([$chip:expr], $($any:tt)*) => {
         compile_error!(

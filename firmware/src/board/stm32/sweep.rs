@@ -31,7 +31,7 @@ use crate::wire::Port;
 use crate::wire::sweep::{SweepReceiver, SweepRequest};
 
 /// The state of the sweep's interrupt.
-pub type SweepCell = IsrCell<SweepIsr>;
+pub type SweepCell<const FROZEN: u16> = IsrCell<SweepIsr<FROZEN>>;
 
 /// Transducers and limits of a sweep.
 pub struct Setup {
@@ -62,7 +62,7 @@ static LISTENING: AtomicU32 = AtomicU32::new(0);
 static ENDED: AtomicU32 = AtomicU32::new(0);
 
 /// The state of the sweep's interrupt.
-pub struct SweepIsr {
+pub struct SweepIsr<const FROZEN: u16> {
     beginning: Exciter<'static>,
     exciter: Exciter<'static>,
     /// Samples of the sweep, and the remaining samples.
@@ -79,13 +79,13 @@ pub struct SweepIsr {
     /// The DAC's code since this tick's update.
     held: DacCode,
     /// The board's registers.
-    pub hardware: Registers,
+    pub hardware: Registers<FROZEN>,
     rows: Frames<'static, ROWS>,
     /// Rows dropped before the sweep's beginning.
     dropped: u32,
 }
 
-impl SweepIsr {
+impl<const FROZEN: u16> SweepIsr<FROZEN> {
     /// One tick: the sweep's next sample while a sweep is requested, otherwise none.
     #[inline(always)]
     pub fn tick(&mut self) {
@@ -132,7 +132,10 @@ impl SweepIsr {
         let listening = LISTENING.load(Ordering::Relaxed);
         // The task below cannot write between the load and the store.
         LISTENING.store(listening.saturating_sub(1), Ordering::Relaxed);
-        if self.hardware.output_event().is_some() || self.hardware.reading_fault().is_some() {
+        if self.hardware.output_event().is_some()
+            || self.hardware.reading_fault().is_some()
+            || self.has_stopped(step)
+        {
             Some(SweepEnd::OutputFault)
         } else if STOP.load(Ordering::Relaxed) || BEGIN.swap(false, Ordering::Relaxed) {
             // A request to begin is not kept for the time after this sweep.
@@ -147,6 +150,11 @@ impl SweepIsr {
         } else {
             self.guard.check(count.wrapping_sub(self.start), step)
         }
+    }
+
+    /// Whether the encoder has stopped. The sweep's own numbers of ticks stand still before its first.
+    fn has_stopped(&mut self, step: i32) -> bool {
+        self.hardware.never_rests() && step == 0 && self.hardware.rested(self.tick).is_some()
     }
 
     fn tell(&mut self, count: i32) {
@@ -172,10 +180,10 @@ fn tell_end(end: SweepEnd) {
 }
 
 /// Waits for the host, and plays the sweep at its request.
-pub fn measure<const N: usize>(
+pub fn measure<const N: usize, const FROZEN: u16>(
     sweep: &'static Sweep<N>,
     setup: &Setup,
-    cell: &'static SweepCell,
+    cell: &'static SweepCell<FROZEN>,
 ) -> ! {
     let mut serial = init_chip(setup.encoder);
     let mut hardware = registers(setup.output, sweep.period(), <ProgramMode>::TIMING);
@@ -340,7 +348,7 @@ macro_rules! board_sweep {
             output: OUTPUT,
         };
 
-        static ISR_STATE: $crate::board::stm32::SweepCell =
+        static ISR_STATE: $crate::board::stm32::SweepCell<FROZEN> =
             $crate::board::isr_cell::IsrCell::empty();
 
         $crate::board_tick!();
