@@ -114,14 +114,17 @@ impl OpenLoop {
         })
     }
 
-    /// The factor above 1 that first puts the closed loop on its border.
-    pub fn gain_margin(&self) -> Option<Margin> {
+    /// The factors above and below 1 that first put the closed loop on its border.
+    pub fn nearest_gain_margins(&self) -> impl Iterator<Item = Margin> {
+        [self.gain_margin(), self.gain_reduction()].into_iter().flatten()
+    }
+
+    fn gain_margin(&self) -> Option<Margin> {
         let above = self.gain_margins.iter().filter(|margin| margin.value > 1.0);
         above.copied().min_by(|a, b| a.value.total_cmp(&b.value))
     }
 
-    /// The factor below 1 that first puts the closed loop on its border.
-    pub fn gain_reduction(&self) -> Option<Margin> {
+    fn gain_reduction(&self) -> Option<Margin> {
         let below = self.gain_margins.iter().filter(|margin| margin.value < 1.0);
         below.copied().max_by(|a, b| a.value.total_cmp(&b.value))
     }

@@ -15,6 +15,8 @@ const FEW: f64 = 3.0;
 /// An axis. All labels of an axis have plain digits, or all have an exponent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
+    /// Its name with its unit; empty if it shares the axis of the panel below.
+    pub name: &'static str,
     range: Range<f64>,
     is_logarithmic: bool,
     digits: usize,
@@ -25,17 +27,17 @@ pub struct Axis {
 
 impl Axis {
     /// A linear axis; its labels have enough digits to distinguish them.
-    pub fn linear(range: Range<f64>) -> Self {
+    pub fn linear(range: Range<f64>, name: &'static str) -> Self {
         let width = (range.end - range.start).abs();
         let largest = range.start.abs().max(range.end.abs());
         let digits = ((largest / width).log10().ceil() as usize + 2).clamp(4, 17);
         let is_plain = (1e-3..LONG).contains(&largest);
-        Self { range, is_logarithmic: false, digits, zero: 1e-9 * width, is_plain }
+        Self { name, range, is_logarithmic: false, digits, zero: 1e-9 * width, is_plain }
     }
 
-    pub fn logarithmic(range: Range<f64>) -> Self {
+    pub fn logarithmic(range: Range<f64>, name: &'static str) -> Self {
         let is_plain = range.start >= 1e-4 && range.end < LONG;
-        Self { range, is_logarithmic: true, digits: 4, zero: 0.0, is_plain }
+        Self { name, range, is_logarithmic: true, digits: 4, zero: 0.0, is_plain }
     }
 
     /// The part of the axis below a value: 0 at its start, 1 at its end.
@@ -111,28 +113,28 @@ mod tests {
 
     #[test]
     fn ticks_are_told_apart_however_small_the_numbers_or_their_range() {
-        let small = Axis::linear(-3e-12..3e-12);
+        let small = Axis::linear(-3e-12..3e-12, "");
         assert_eq!(labels(&small, &[1e-12, 2e-12, 1e-28]), ["1e-12", "2e-12", "0"]);
-        let narrow = labels(&Axis::linear(0.2..0.200_004), &[0.200_001, 0.200_002]);
+        let narrow = labels(&Axis::linear(0.2..0.200_004, ""), &[0.200_001, 0.200_002]);
         assert_ne!(narrow[0], narrow[1]);
-        assert_eq!(labels(&Axis::linear(0.0..45.0), &[3.0 * 0.1]), ["0.3"]);
+        assert_eq!(labels(&Axis::linear(0.0..45.0, ""), &[3.0 * 0.1]), ["0.3"]);
     }
 
     #[test]
     fn an_axis_writes_all_its_numbers_alike() {
-        let wide = Axis::logarithmic(3.0..3e7);
+        let wide = Axis::logarithmic(3.0..3e7, "");
         assert_eq!(labels(&wide, &wide.key_points(BoldPoints(9)))[..2], ["1e1", "1e2"]);
-        assert_eq!(labels(&Axis::logarithmic(3.0..3e6), &[10.0, 1e6]), ["10", "1000000"]);
-        assert_eq!(labels(&Axis::logarithmic(1e-5..1.0), &[1e-5, 0.1]), ["1e-5", "1e-1"]);
-        let small = Axis::linear(0.0..2e-4);
+        assert_eq!(labels(&Axis::logarithmic(3.0..3e6, ""), &[10.0, 1e6]), ["10", "1000000"]);
+        assert_eq!(labels(&Axis::logarithmic(1e-5..1.0, ""), &[1e-5, 0.1]), ["1e-5", "1e-1"]);
+        let small = Axis::linear(0.0..2e-4, "");
         assert_eq!(labels(&small, &[0.0, 5e-5, 1.5e-4]), ["0", "5e-5", "1.5e-4"]);
-        let large = Axis::linear(0.0..2e7);
+        let large = Axis::linear(0.0..2e7, "");
         assert_eq!(labels(&large, &[5e6, 1e7, 1.5e7]), ["5e6", "1e7", "1.5e7"]);
     }
 
     #[test]
     fn a_logarithmic_axis_has_ticks_enough_to_read_it_and_no_more() {
-        let ticks = |range, most| Axis::logarithmic(range).key_points(BoldPoints(most));
+        let ticks = |range, most| Axis::logarithmic(range, "").key_points(BoldPoints(most));
         assert_eq!(ticks(3.0..70.0, 9), [5.0, 10.0, 20.0, 50.0]);
         assert_eq!(ticks(1.0..1e4, 9), [1.0, 10.0, 100.0, 1e3, 1e4]);
         assert!((2..=9).contains(&ticks(1e-300..1e300, 9).len()));

@@ -35,20 +35,20 @@ pub fn bode(
     let gains = span(gains.chain([1.0]));
     let gains = wanted.y.clone().unwrap_or(gains.start / 2.0..gains.end * 2.0);
     let phases = padded(span(seen().map(|point| point.phase).chain([-180.0])), 0.06);
-    let hertz = Axis::logarithmic(x.clone());
-    let gains = Axes::new((hertz.clone(), ""), (Axis::logarithmic(gains), "gain (1)"));
-    let phases = Axes::new((hertz, "frequency (Hz)"), (Axis::linear(phases), "phase (degrees)"));
+    let hertz = |name| Axis::logarithmic(x.clone(), name);
+    let (gains, phases) =
+        (Axis::logarithmic(gains, "gain (1)"), Axis::linear(phases, "phase (degrees)"));
     let lines = (0..).map(|index| Sample::Line(Stroke::of(index, 2)));
-    let legends = vec![Legend::new(1, lines.zip(words(loops)))];
-    Page { title, width: WIDTH, heights: &PANELS, legends }.draw(|areas| {
-        let (gains, phases) = (Panel::new(&areas[0], gains)?, Panel::new(&areas[1], phases)?);
+    Page::new(title, &PANELS).legend(1, lines.zip(words(loops))).draw(|areas| {
+        let gains = Panel::new(&areas[0], hertz(""), gains)?;
+        let phases = Panel::new(&areas[1], hertz("frequency (Hz)"), phases)?;
         gains.level(LEVEL, 1.0)?;
         phases.level(LEVEL, -180.0)?;
         for (index, (_, found)) in loops.iter().enumerate() {
             let stroke = Stroke::of(index, 2);
             gains.curve(stroke, found.points.iter().map(|point| (point.hertz, point.gain)))?;
             phases.curve(stroke, found.points.iter().map(|point| (point.hertz, point.phase)))?;
-            for margin in [found.gain_margin(), found.gain_reduction()].into_iter().flatten() {
+            for margin in found.nearest_gain_margins() {
                 mark(&gains, margin.hertz, [1.0, 1.0 / margin.value])?;
             }
             if let Some(margin) = found.phase_margin() {
@@ -62,11 +62,10 @@ pub fn bode(
 
 /// The frequencies around the margins, a decade to each side and more.
 fn interesting(loops: &[(String, OpenLoop)], all: &Range<f64>) -> Range<f64> {
-    let marked = |found: &OpenLoop| {
-        [found.gain_margin(), found.gain_reduction(), found.phase_margin()].into_iter().flatten()
-    };
-    let margins = loops.iter().flat_map(|(_, found)| marked(found)).map(|margin| margin.hertz);
-    let lowest = margins.fold(all.end, f64::min);
+    let margins = loops
+        .iter()
+        .flat_map(|(_, found)| found.nearest_gain_margins().chain(found.phase_margin()));
+    let lowest = margins.map(|margin| margin.hertz).fold(all.end, f64::min);
     (lowest / 30.0).clamp(all.start, all.end / 100.0)..all.end
 }
 
@@ -95,8 +94,7 @@ pub fn words(loops: &[(String, OpenLoop)]) -> Vec<String> {
             let (value, db) = (significant(margin.value, 4), decibels(margin.value));
             format!("gain margin {value} ({db} dB) {}", at(margin))
         };
-        let gains = [found.gain_margin(), found.gain_reduction()];
-        let mut words: Vec<_> = gains.into_iter().flatten().map(factor).collect();
+        let mut words: Vec<_> = found.nearest_gain_margins().map(factor).collect();
         if words.is_empty() {
             words.push("no gain margin: the phase is never -180 degrees".to_owned());
         }
@@ -118,5 +116,5 @@ pub fn data(loops: Vec<(String, OpenLoop)>) -> Data {
             vec![(&*name).into(), point.hertz.into(), point.gain.into(), point.phase.into()]
         })
     });
-    Data::new(&["scene", "frequency (Hz)", "gain (1)", "phase (degrees)"], rows)
+    Data::new("scene,frequency (Hz),gain (1),phase (degrees)", rows)
 }

@@ -44,14 +44,8 @@ impl BudgetRuns {
         let rows = with.into_iter().zip(without).map(|([time, taken, budget, angle], other)| {
             [time, budget, taken, other[1], angle, other[3]].map(Into::into).to_vec()
         });
-        let header = &[
-            "time (s)",
-            "budget (J)",
-            "taken (J)",
-            "taken without tank (J)",
-            "angle (rad)",
-            "angle without tank (rad)",
-        ];
+        let header = "time (s),budget (J),taken (J),taken without tank (J),angle (rad),\
+                      angle without tank (rad)";
         Data::new(header, rows)
     }
 
@@ -70,17 +64,17 @@ impl BudgetRuns {
         let [energy, power] = budget.map_or([0.0; 2], |host| [host.energy, host.power]);
         let [energy, power] = [energy, power].map(|value| significant(value, 3));
         // Each line of a tank is that of both panels.
-        let entries = vec![
+        let entries = [
             (Sample::Line(BUDGET), format!("budget: {energy} J at once and {power} W")),
             (Sample::Line(WITH), format!("with the tank: {}", most[0])),
             (Sample::Line(HAND), "angle that the hand wants, until it lets go".to_owned()),
             (Sample::Line(WITHOUT), format!("without the tank: {}", most[1])),
         ];
-        let legends = vec![Legend::new(2, entries)];
-        Page { title, width: WIDTH, heights: &PANELS, legends }.draw(|areas| {
+        Page::new(title, &PANELS).legend(2, entries).draw(|areas| {
             let least = with.iter().map(|row| row[1]).fold(0.0, f64::min);
             let y = padded(least..SHOWN * last[2], 0.05);
-            let panel = Panel::new(&areas[0], axes(last[0], y.clone(), ["", "energy taken (J)"]))?;
+            let x = Axis::linear(0.0..last[0], "");
+            let panel = Panel::new(&areas[0], x, Axis::linear(y.clone(), "energy taken (J)"))?;
             // A straight line.
             panel.curve(BUDGET, [with[0], *last].map(|row| (row[0], row[2])))?;
             panel.curve(WITHOUT, points(&without, 1, &y))?;
@@ -94,15 +88,12 @@ impl BudgetRuns {
         let hand: Vec<_> = held.map(|time| (time, self.hand.position(time))).collect();
         let seen = with.iter().map(|row| row[3]).chain(hand.iter().map(|point| point.1));
         let y = padded(span(seen), BEYOND);
-        let panel = Panel::new(area, axes(end, y.clone(), ["time (s)", "angle (rad)"]))?;
+        let x = Axis::linear(0.0..end, "time (s)");
+        let panel = Panel::new(area, x, Axis::linear(y.clone(), "angle (rad)"))?;
         panel.curve(WITHOUT, points(without, 3, &y))?;
         panel.curve(WITH, points(with, 3, &y))?;
         panel.curve(HAND, hand)
     }
-}
-
-fn axes(end: f64, y: Range<f64>, [x_name, y_name]: [&str; 2]) -> Axes<'_> {
-    Axes::new((Axis::linear(0.0..end), x_name), (Axis::linear(y), y_name))
 }
 
 /// A column over time, until it leaves the range.

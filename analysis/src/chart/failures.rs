@@ -10,7 +10,7 @@ const STIFFNESS: Range<f64> = 300.0..400_000.0;
 const TRUTH: Stroke = Stroke::solid(4);
 const CERTIFIED: Stroke = Stroke::dashed(&[2, 4], 2);
 /// Springs that a method calls unstable without need.
-const NEEDLESS: Fill = Fill::Level;
+const NEEDLESS: Fill = Fill::Lines(&[Direction::Level]);
 
 /// Draws the devices beside each other: curves of each method's largest stable stiffness, grey where a method
 /// shows an unstable loop as stable, hatched where it shows a stable loop as unstable.
@@ -22,9 +22,8 @@ pub fn failures(regions: &[Region]) -> Result<Picture, ChartError> {
         (Sample::Line(CERTIFIED), "certified"),
     ];
     let methods = METHODS.map(|method| (Sample::Line(stroke(method)), method.name()));
-    let legends = vec![Legend::new(2, regions_and_lines.into_iter().chain(methods))];
-    let title = "Stability limits by method of integration";
-    Page { title, width: WIDTH, heights: &[HEIGHT], legends }.draw(|areas| {
+    let page = Page::new("Stability limits by method of integration", &[HEIGHT]);
+    page.legend(2, regions_and_lines.into_iter().chain(methods)).draw(|areas| {
         let areas = areas[0].split_evenly((1, regions.len()));
         areas.iter().zip(regions).try_for_each(|(area, region)| paint(area, region))
     })
@@ -32,11 +31,11 @@ pub fn failures(regions: &[Region]) -> Result<Picture, ChartError> {
 
 fn paint(area: &Area<'_>, region: &Region) -> Drawn<()> {
     let steps = span(region.apparent.iter().flatten().map(|point| point.0));
-    let axes = Axes::new(
-        (Axis::logarithmic(steps), "steps a tick"),
-        (Axis::logarithmic(STIFFNESS), "stiffness (N m/rad)"),
+    let (x, y) = (
+        Axis::logarithmic(steps, "steps a tick"),
+        Axis::logarithmic(STIFFNESS, "stiffness (N m/rad)"),
     );
-    let mut panel = Panel::bare(area, Axes { heading: region.device, ..axes })?;
+    let mut panel = Panel::bare(area, region.device, x, y)?;
     shade(&panel, region)?;
     panel.grid()?;
     panel.level(TRUTH, region.truth)?;

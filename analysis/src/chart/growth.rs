@@ -9,10 +9,10 @@ pub fn growth(title: &str, period: f64, position: &[f64]) -> Result<Picture, Cha
     }
     let times = 0.0..period * position.len() as f64;
     let angles = padded(span(position.iter().copied()), 0.1);
-    let axes = Axes::new((Axis::linear(times), "time (s)"), (Axis::linear(angles), "angle (rad)"));
-    Page { title, width: WIDTH, heights: &[HEIGHT], legends: Vec::new() }.draw(|areas| {
+    Page::new(title, &[HEIGHT]).draw(|areas| {
         let points = position.iter().enumerate();
         let points = points.map(|(sample, &value)| (sample as f64 * period, value));
-        Panel::new(&areas[0], axes)?.curve(Stroke::solid(1), points)
+        let (x, y) = (Axis::linear(times, "time (s)"), Axis::linear(angles, "angle (rad)"));
+        Panel::new(&areas[0], x, y)?.curve(Stroke::solid(1), points)
     })
 }

@@ -16,54 +16,75 @@ const SPACING: i32 = units(7);
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fill {
     Solid(RGBColor),
+    Lines(&'static [Direction]),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
     Rising,
     Falling,
-    /// Rising and falling lines.
-    Crossed,
     Level,
     Upright,
-    /// Level and upright lines.
-    Squared,
-    /// Rising and upright lines.
-    Barred,
 }
+use Direction::{Falling, Level, Rising, Upright};
 
 impl Fill {
     /// The fill behind samples of this status, and its meaning; `None` for those whose torque was not
     /// limited.
     pub fn of(status: TickStatus) -> Option<(Self, &'static str)> {
+        let lines = |directions, meaning| Some((Self::Lines(directions), meaning));
         match status {
             TickStatus::Ran(LimitReason::None) => None,
             TickStatus::Ran(LimitReason::Torque) => Some((Self::Solid(FORBIDDEN), "torque limit")),
-            TickStatus::Ran(LimitReason::DacRange) => Some((Self::Rising, "converter limit")),
-            TickStatus::Ran(LimitReason::Angle) => Some((Self::Falling, "angle out of range")),
-            TickStatus::Ran(LimitReason::NotANumber) => Some((Self::Crossed, "not a number")),
-            TickStatus::Ran(LimitReason::Ramp) => Some((Self::Upright, "fading in or out")),
-            TickStatus::Ran(LimitReason::Energy) => Some((Self::Barred, "host's energy spent")),
-            TickStatus::Ran(LimitReason::Heat) => Some((Self::Squared, "heat limit")),
-            TickStatus::Missed => Some((Self::Level, "tick missed")),
+            TickStatus::Ran(LimitReason::DacRange) => lines(&[Rising], "converter limit"),
+            TickStatus::Ran(LimitReason::Angle) => lines(&[Falling], "angle out of range"),
+            TickStatus::Ran(LimitReason::NotANumber) => lines(&[Rising, Falling], "not a number"),
+            TickStatus::Ran(LimitReason::Ramp) => lines(&[Upright], "fading in or out"),
+            TickStatus::Ran(LimitReason::Energy) => {
+                lines(&[Rising, Upright], "host's energy spent")
+            }
+            TickStatus::Ran(LimitReason::Heat) => lines(&[Level, Upright], "heat limit"),
+            TickStatus::Missed => lines(&[Level], "tick missed"),
         }
     }
 
     /// Covers a rectangle, in units of the area.
     pub(super) fn draw(self, area: &Area<'_>, x: &Range<i32>, y: &Range<i32>) -> Drawn<()> {
-        let lines = match self {
+        match self {
             Self::Solid(ink) => {
                 let corners = [(x.start, y.start), (x.end, y.end)];
-                return area.draw(&Rectangle::new(corners, ink.filled()));
+                area.draw(&Rectangle::new(corners, ink.filled()))
             }
-            Self::Rising => rising(x, y),
-            Self::Falling => falling(x, y),
-            Self::Crossed => [rising(x, y), falling(x, y)].concat(),
-            Self::Level => level(x, y),
-            Self::Upright => upright(x, y),
-            Self::Squared => [level(x, y), upright(x, y)].concat(),
-            Self::Barred => [rising(x, y), upright(x, y)].concat(),
-        };
-        for line in lines {
-            area.draw(&PathElement::new(line.to_vec(), FAINT.stroke_width(UNITS)))?;
+            Self::Lines(directions) => {
+                let lines = directions.iter().flat_map(|direction| direction.lines(x, y));
+                let path = |line: Line| PathElement::new(line, FAINT.stroke_width(UNITS));
+                lines.map(path).try_for_each(|path| area.draw(&path))
+            }
         }
-        Ok(())
+    }
+}
+
+impl Direction {
+    /// The lines as far as they lie in a rectangle.
+    fn lines(self, x: &Range<i32>, y: &Range<i32>) -> Vec<Line> {
+        match self {
+            // `x + y` the same along each.
+            Rising => {
+                let sums = x.start + y.start..x.end + y.end;
+                let line = |sum| {
+                    let (from, to) = (x.start.max(sum - y.end), x.end.min(sum - y.start));
+                    [(from, sum - from), (to, sum - to)]
+                };
+                on_grid(&sums).map(line).collect()
+            }
+            // `x - y` the same along each.
+            Falling => {
+                let mirrored = Rising.lines(x, &(-y.end..-y.start));
+                mirrored.into_iter().map(|line| line.map(|(x, y)| (x, -y))).collect()
+            }
+            Level => on_grid(y).map(|level| [(x.start, level), (x.end, level)]).collect(),
+            Upright => on_grid(x).map(|at| [(at, y.start), (at, y.end)]).collect(),
+        }
     }
 }
 
@@ -75,30 +96,6 @@ fn on_grid(range: &Range<i32>) -> impl Iterator<Item = i32> {
     (first..range.end).step_by(SPACING as usize).filter(|at| range.contains(at))
 }
 
-fn level(x: &Range<i32>, y: &Range<i32>) -> Vec<Line> {
-    on_grid(y).map(|level| [(x.start, level), (x.end, level)]).collect()
-}
-
-fn upright(x: &Range<i32>, y: &Range<i32>) -> Vec<Line> {
-    on_grid(x).map(|at| [(at, y.start), (at, y.end)]).collect()
-}
-
-/// `x + y` the same along each, as far as they lie in the rectangle.
-fn rising(x: &Range<i32>, y: &Range<i32>) -> Vec<Line> {
-    let sums = x.start + y.start..x.end + y.end;
-    let line = |sum| {
-        let (from, to) = (x.start.max(sum - y.end), x.end.min(sum - y.start));
-        [(from, sum - from), (to, sum - to)]
-    };
-    on_grid(&sums).map(line).collect()
-}
-
-/// `x - y` the same along each.
-fn falling(x: &Range<i32>, y: &Range<i32>) -> Vec<Line> {
-    let mirrored = rising(x, &(-y.end..-y.start));
-    mirrored.into_iter().map(|line| line.map(|(x, y)| (x, -y))).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -106,7 +103,7 @@ mod tests {
     #[test]
     fn lines_stay_in_their_rectangle_and_on_one_grid() {
         let (x, y) = (units(10)..units(11), units(3)..units(60));
-        let [up, down] = [rising(&x, &y), falling(&x, &y)];
+        let [up, down] = [Rising, Falling].map(|direction| direction.lines(&x, &y));
         // A pixel wide and 57 high: a line every 7 pixels.
         assert!((8..=9).contains(&up.len()) && (8..=9).contains(&down.len()));
         for [from, to] in up.iter().chain(&down) {

@@ -3,8 +3,10 @@
 
 use std::f64::consts::TAU;
 
+use nalgebra::Complex;
+
 use super::*;
-use crate::identify::{FrequencyPoint, Identification};
+use crate::identify::{Estimate, FrequencyPoint, Identification};
 use crate::quantity::significant;
 
 /// Width and height of the panels in pixels.
@@ -27,8 +29,7 @@ pub fn identify(title: &str, found: &Identification) -> Result<Picture, ChartErr
     if found.responses.len() < 2 {
         return Err(ChartError::TooFewPoints);
     }
-    let legends = vec![Legend::new(2, legend(found))];
-    Page { title, width: SIZE.0, heights: &[SIZE.1], legends }.draw(|areas| {
+    Page::new(title, &[SIZE.1]).wide(SIZE.0).legend(2, legend(found)).draw(|areas| {
         let (left, right) = areas[0].split_horizontally(units(LEFT));
         let (upper, lower) = right.split_vertically(units(SIZE.1 / 2));
         admittance(&left, found)?;
@@ -75,15 +76,12 @@ fn admittance(area: &Area<'_>, found: &Identification) -> Drawn<()> {
     let far = dots.iter().map(|p| p.0.abs().max(2.0 * p.1.abs())).fold(2.0 * radius, f64::max);
     let left = dots.iter().map(|p| p.0).fold(-0.06 * far, f64::min);
     let x = left..1.06 * far;
-    let axes = |half: f64| {
-        Axes::new(
-            (Axis::linear(x.clone()), "real part of J (rad/(N m s))"),
-            (Axis::linear(-half..half), "imaginary part of J (rad/(N m s))"),
-        )
-    };
+    let real = Axis::linear(x.clone(), "real part of J (rad/(N m s))");
+    let imaginary = |half: f64| Axis::linear(-half..half, "imaginary part of J (rad/(N m s))");
     // The same scale as across.
-    let room = Panel::bare(area, axes(far))?.frame;
-    let panel = Panel::new(area, axes(0.5 * room.bottom / room.right * (x.end - x.start)))?;
+    let room = Panel::bare(area, "", real.clone(), imaginary(far))?.frame;
+    let half = 0.5 * room.bottom / room.right * (x.end - x.start);
+    let panel = Panel::new(area, real, imaginary(half))?;
     panel.level(AXIS, 0.0)?;
     panel.upright(AXIS, 0.0)?;
     let rim = |i: usize| {
@@ -116,39 +114,55 @@ fn disk(found: &Identification) -> Option<f64> {
 /// The real parts of `1/J` over frequency: the damping, except for lag and delay.
 fn damping(area: &Area<'_>, found: &Identification) -> Drawn<()> {
     let estimate = &found.damping;
-    let reach = significant(0.5 * (estimate.hi - estimate.lo), 2);
-    let heading = format!("b = {} +- {reach} N m s/rad", significant(estimate.value, 5));
-    let real = |r: &FrequencyPoint| r.impedance().re;
-    spectrum(area, found, real, (&heading, "", "Re 1/J (N m s/rad)"), |panel, [from, to]| {
-        let [lo, hi] = [estimate.lo, estimate.hi];
-        panel.fill(FORBIDDEN, [(from, lo), (to, lo), (to, hi), (from, hi)])?;
-        panel.level(VALUE, estimate.value)?;
-        match late(found) {
-            0.0 => Ok(()),
-            _ => panel.curve(LATE, over(found, |omega| found.model.impedance(omega).re)),
-        }
-    })
+    let heading = format!("b = {} N m s/rad", with_reach(estimate));
+    let names = ["", "Re 1/J (N m s/rad)"];
+    spectrum(
+        area,
+        found,
+        |value| value.re,
+        &heading,
+        names,
+        |panel, [from, to]| {
+            let [lo, hi] = [estimate.lo, estimate.hi];
+            panel.fill(FORBIDDEN, [(from, lo), (to, lo), (to, hi), (from, hi)])?;
+            panel.level(VALUE, estimate.value)?;
+            match late(found) {
+                0.0 => Ok(()),
+                _ => panel.curve(LATE, over(found, |value| value.re)),
+            }
+        },
+    )
 }
 
 /// The imaginary parts of `1/J` over frequency: inertia times angular frequency.
 fn inertia(area: &Area<'_>, found: &Identification) -> Drawn<()> {
-    let estimate = &found.inertia;
-    let reach = significant(0.5 * (estimate.hi - estimate.lo), 2);
-    let heading = format!("m = {} +- {reach} kg m^2", significant(estimate.value, 5));
-    let imaginary = |r: &FrequencyPoint| r.impedance().im;
-    let names = (&*heading, "frequency (Hz)", "Im 1/J (N m s/rad)");
-    spectrum(area, found, imaginary, names, |panel, _| {
-        panel.curve(VALUE, over(found, |omega| found.model.impedance(omega).im))
-    })
+    let heading = format!("m = {} kg m^2", with_reach(&found.inertia));
+    let names = ["frequency (Hz)", "Im 1/J (N m s/rad)"];
+    spectrum(
+        area,
+        found,
+        |value| value.im,
+        &heading,
+        names,
+        |panel, _| panel.curve(VALUE, over(found, |value| value.im)),
+    )
 }
 
-/// A curve from the slowest response to the fastest.
-fn over(found: &Identification, value: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
+fn with_reach(Estimate { value, lo, hi }: &Estimate) -> String {
+    format!("{} +- {}", significant(*value, 5), significant(0.5 * (hi - lo), 2))
+}
+
+/// A part of the fitted `1/J`, from the slowest response to the fastest.
+fn over(found: &Identification, part: Part) -> Vec<(f64, f64)> {
     let range = measured(found);
     let ratio = range.end / range.start;
     let hertz = |i: usize| range.start * ratio.powf(i as f64 / POINTS as f64);
-    (0..=POINTS).map(|i| (hertz(i), value(TAU * hertz(i)))).collect()
+    let value = |hertz: f64| part(found.model.impedance(TAU * hertz));
+    (0..=POINTS).map(|i| (hertz(i), value(hertz(i)))).collect()
 }
+
+/// The real or the imaginary part.
+type Part = fn(Complex<f64>) -> f64;
 
 /// Frequencies in Hz of the responses.
 fn measured(found: &Identification) -> Range<f64> {
@@ -160,17 +174,18 @@ fn measured(found: &Identification) -> Range<f64> {
 fn spectrum(
     area: &Area<'_>,
     found: &Identification,
-    part: impl Fn(&FrequencyPoint) -> f64,
-    (heading, x_name, y_name): (&str, &str, &str),
+    part: Part,
+    heading: &str,
+    [x_name, y_name]: [&'static str; 2],
     fitted: impl FnOnce(&Panel<'_, '_>, [f64; 2]) -> Drawn<()>,
 ) -> Drawn<()> {
     let measured = measured(found);
     let shown = [measured.start / 1.5, measured.end * 1.5];
+    let part = |r: &FrequencyPoint| part(r.impedance());
     let ends = |r: &FrequencyPoint| [-BAR, BAR].map(|reach| part(r) + reach * r.deviation);
     let range = padded(span(found.responses.iter().flat_map(ends)), 0.1);
-    let x = (Axis::logarithmic(shown[0]..shown[1]), x_name);
-    let axes = Axes { heading, ..Axes::new(x, (Axis::linear(range), y_name)) };
-    let panel = Panel::new(area, axes)?;
+    let x = Axis::logarithmic(shown[0]..shown[1], x_name);
+    let panel = Panel::headed(area, heading, x, Axis::linear(range, y_name))?;
     fitted(&panel, shown)?;
     for response in &found.responses {
         let hertz = response.omega / TAU;

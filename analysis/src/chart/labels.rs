@@ -12,6 +12,8 @@ const LETTER: f64 = 0.52;
 const GAP: i32 = units(7);
 /// Distance between a line and a name.
 const BESIDE: i32 = units(1);
+/// Up to this distance a name is next to its point; beyond it a line leads there.
+const NEAR: f64 = (2 * GAP) as f64;
 /// Points at this distance count as one place.
 const SAME: f64 = units(3) as f64;
 /// A name belongs to its point if other points are this many times farther away.
@@ -38,6 +40,17 @@ impl Block {
     /// From its upper left to its lower right corner.
     pub fn new((left, top): (i32, i32), (right, bottom): (i32, i32)) -> Self {
         Self { left, top, right, bottom }
+    }
+
+    /// What is at most `reach` from a vertical or horizontal line, or from a point.
+    fn around(a: (i32, i32), b: (i32, i32), reach: i32) -> Self {
+        let (left, top) = (a.0.min(b.0) - reach, a.1.min(b.1) - reach);
+        Self { left, top, right: a.0.max(b.0) + reach, bottom: a.1.max(b.1) + reach }
+    }
+
+    /// The height of its middle.
+    fn middle(&self) -> i32 {
+        (self.top + self.bottom) / 2
     }
 
     fn meets(&self, other: &Self) -> bool {
@@ -73,14 +86,6 @@ pub struct Labels {
     points: Vec<(i32, i32)>,
 }
 
-/// The place of a name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Spot {
-    block: Block,
-    /// Whether it needs a line to its point.
-    is_led: bool,
-}
-
 impl Labels {
     pub fn within(panel: Block) -> Self {
         Self { panel, taken: Vec::new(), names: Vec::new(), points: Vec::new() }
@@ -88,12 +93,8 @@ impl Labels {
 
     /// Keeps other names away from a point, so that no other name is taken for its name.
     pub fn mark(&mut self, point: (i32, i32), reach: i32) {
-        self.keep_clear(point, reach);
+        self.taken.push(Block::around(point, point, reach));
         self.points.push(point);
-    }
-
-    fn keep_clear(&mut self, (x, y): (i32, i32), reach: i32) {
-        self.taken.push(Block::new((x - reach, y - reach), (x + reach, y + reach)));
     }
 
     /// Keeps names away from a line.
@@ -101,21 +102,24 @@ impl Labels {
         let steps = |from, to| (distance(from, to) / f64::from(reach)).ceil().max(1.0) as i32;
         for pair in line.windows(2) {
             let steps = steps(pair[0], pair[1]);
-            (0..=steps).for_each(|step| self.keep_clear(along(pair, (step, steps)), reach));
+            let points = (0..=steps).map(|step| along(pair, (step, steps)));
+            self.taken.extend(points.map(|point| Block::around(point, point, reach)));
         }
     }
 
     /// Keeps names off a vertical or horizontal line.
     pub fn keep_clear_along(&mut self, from: (i32, i32), to: (i32, i32)) {
-        let (left, right) = (from.0.min(to.0), from.0.max(to.0));
-        let (top, bottom) = (from.1.min(to.1), from.1.max(to.1));
-        self.taken
-            .push(Block::new((left - BESIDE, top - BESIDE), (right + BESIDE, bottom + BESIDE)));
+        self.taken.push(Block::around(from, to, BESIDE));
+    }
+
+    /// The points at more than this distance from one of them.
+    fn beyond(&self, reach: f64, point: (i32, i32)) -> impl Iterator<Item = (i32, i32)> {
+        self.points.iter().copied().filter(move |&other| distance(point, other) > reach)
     }
 
     /// The nearest place to a point where a name of this size fits and belongs to the point; otherwise a
-    /// place with a leader line to the point. `None` if the panel is full.
-    fn place(&self, point: (i32, i32), (width, height): (i32, i32)) -> Option<Spot> {
+    /// place with a leader line to the point, which is true of it. `None` if the panel is full.
+    fn place(&self, point: (i32, i32), (width, height): (i32, i32)) -> Option<(Block, bool)> {
         let (x, y) = point;
         let around = (0..DISTANCES).flat_map(|distance| {
             (0..DIRECTIONS).map(move |direction| {
@@ -140,35 +144,26 @@ impl Labels {
             Block::new(corner, (corner.0 + width, corner.1 + height))
         };
         let free = || around.clone().map(block).filter(|block| self.is_free(block));
-        let own = free()
-            .find(|block| block.distance(point) <= f64::from(2 * GAP) && self.is_own(point, block));
-        let far = |block: &Block| block.distance(point) >= f64::from(2 * GAP);
-        let led = || {
-            let led = || free().filter(|block| far(block) && self.can_lead(point, block));
-            let others = || self.points.iter().filter(|other| distance(point, **other) > SAME);
-            let alone = |b: &Block| others().all(|other| b.distance(*other) >= f64::from(2 * GAP));
-            led().find(alone).or_else(|| led().next()).or_else(|| free().next())
-        };
-        let spot = |is_led| move |block| Spot { block, is_led };
-        own.map(spot(false)).or_else(|| led().map(spot(true)))
+        let own = free().find(|b| b.distance(point) <= NEAR && self.is_own(point, b));
+        let led = || free().filter(|b| b.distance(point) >= NEAR && self.can_lead(point, b));
+        let alone = |b: &Block| self.beyond(SAME, point).all(|other| b.distance(other) >= NEAR);
+        let far = || led().find(alone).or_else(|| led().next()).or_else(|| free().next());
+        own.map(|block| (block, false)).or_else(|| far().map(|block| (block, true)))
     }
 
     /// Whether a name there is closest to its own point.
     fn is_own(&self, point: (i32, i32), block: &Block) -> bool {
-        let others = self.points.iter().filter(|other| distance(point, **other) > SAME);
         let own = block.distance(point);
-        others.into_iter().all(|other| block.distance(*other) >= OWN * own)
+        self.beyond(SAME, point).all(|other| block.distance(other) >= OWN * own)
     }
 
     /// Whether a line from there to the point passes no other point and no name.
     fn can_lead(&self, point: (i32, i32), block: &Block) -> bool {
         let line = [point, block.nearest(point)];
-        let others = self.points.iter().filter(|other| distance(point, **other) > SAME);
-        let others: Vec<_> = others.filter(|other| distance(point, **other) > PAST).collect();
-        (0..=STEPS).map(|step| along(&line, (step, STEPS))).all(|(x, y)| {
-            let on = |name: &Block| name.meets(&Block::new((x - 1, y - 1), (x + 1, y + 1)));
-            !self.names.iter().any(on)
-                && others.iter().all(|other| distance((x, y), **other) > PAST)
+        let others: Vec<_> = self.beyond(PAST, point).collect();
+        (0..=STEPS).map(|step| along(&line, (step, STEPS))).all(|at| {
+            let on = |name: &Block| name.meets(&Block::around(at, at, 1));
+            !self.names.iter().any(on) && others.iter().all(|&other| distance(at, other) > PAST)
         })
     }
 
@@ -190,14 +185,14 @@ impl Labels {
         let free = corners.map(block).find(|block| self.is_free(block));
         let Some(block) = free else { return Ok(()) };
         self.take(block);
-        let place = (block.left + BESIDE, (block.top + block.bottom) / 2);
+        let place = (block.left + BESIDE, block.middle());
         area.draw(&Text::new(word.to_owned(), place, anchored(HPos::Left, VPos::Center)))
     }
 
     /// Writes a name beside a point, with a thin leader line if it is far away or nearer to another point.
     pub fn write(&mut self, area: &Area<'_>, point: (i32, i32), name: &str) -> Drawn<()> {
         let size = (width_of(name), LABEL);
-        let Some(Spot { block, is_led }) = self.place(point, size) else { return Ok(()) };
+        let Some((block, is_led)) = self.place(point, size) else { return Ok(()) };
         self.take(block);
         if is_led {
             let line = BLACK.mix(0.7).stroke_width(UNITS * 3 / 4);
@@ -210,8 +205,8 @@ impl Labels {
             x if x >= block.right - quarter => (HPos::Right, block.right),
             _ => (HPos::Center, (block.left + block.right) / 2),
         };
-        let place = (edge, (block.top + block.bottom) / 2);
-        area.draw(&Text::new(name.to_owned(), place, anchored(side, VPos::Center)))
+        let style = anchored(side, VPos::Center);
+        area.draw(&Text::new(name.to_owned(), (edge, block.middle()), style))
     }
 }
 
@@ -243,7 +238,7 @@ mod tests {
         points.iter().for_each(|&point| labels.mark(point, units(4)));
         let size = (units(90), units(13));
         let mut place = |&point: &(i32, i32)| {
-            let found = labels.place(point, size).unwrap().block;
+            let (found, _) = labels.place(point, size).unwrap();
             labels.take(found);
             found
         };
@@ -266,12 +261,12 @@ mod tests {
         points.iter().for_each(|&point| labels.mark(point, units(4)));
         let mut led = Vec::new();
         for &point in &points {
-            let spot = labels.place(point, (units(50), units(13))).unwrap();
-            labels.take(spot.block);
+            let (block, is_led) = labels.place(point, (units(50), units(13))).unwrap();
+            labels.take(block);
             let others = points.iter().filter(|other| **other != point);
-            let nearest = others.map(|other| spot.block.distance(*other)).fold(1e9, f64::min);
-            assert!(spot.is_led || spot.block.distance(point) < nearest, "{point:?} {spot:?}");
-            led.push(spot.is_led);
+            let nearest = others.map(|other| block.distance(*other)).fold(1e9, f64::min);
+            assert!(is_led || block.distance(point) < nearest, "{point:?} {block:?}");
+            led.push(is_led);
         }
         assert!(led[4] && !led[9], "{led:?}");
     }

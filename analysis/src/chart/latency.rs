@@ -31,18 +31,16 @@ pub fn latency(title: &str, loops: &[LatencyLimits]) -> Result<Picture, ChartErr
         return Err(ChartError::TooFewPoints);
     }
     let stiffness = stiffness.start / 1.2..stiffness.end * 1.2;
-    let axes = Axes::new(
-        (Axis::logarithmic(rates), "servo rate (Hz)"),
-        (Axis::logarithmic(stiffness), "stiffness (N m/rad)"),
-    );
+    let axes = [
+        Axis::logarithmic(rates, "servo rate (Hz)"),
+        Axis::logarithmic(stiffness, "stiffness (N m/rad)"),
+    ];
     let unsafe_point = "it oscillates in some passive hand, with torques latched";
     let curves = CURVES.iter().enumerate();
     let curves = curves.map(|(index, curve)| (Sample::Line(stroke(index)), curve.0));
     let entries = curves.chain([(Sample::Point(Mark::CROSS), unsafe_point)]);
-    let legends = vec![Legend::new(1, entries)];
     let rows = loops.len().div_ceil(COLUMNS);
-    let heights = [PANEL * rows as i32];
-    Page { title, width: WIDTH, heights: &heights, legends }.draw(|areas| {
+    Page::new(title, &[PANEL * rows as i32]).legend(1, entries).draw(|areas| {
         let areas = areas[0].split_evenly((rows, COLUMNS));
         loops.iter().zip(&areas).try_for_each(|(limits, area)| paint(area, limits, &axes))
     })
@@ -53,9 +51,10 @@ fn stroke(index: usize) -> Stroke {
     Stroke::of(index, if index < 2 { 2 } else { 1 })
 }
 
-fn paint(area: &Area<'_>, limits: &LatencyLimits, axes: &Axes<'_>) -> Drawn<()> {
+fn paint(area: &Area<'_>, limits: &LatencyLimits, axes: &[Axis; 2]) -> Drawn<()> {
     let heading = format!("current loop of {} Hz", significant(limits.bandwidth, 3));
-    let panel = Panel::new(area, Axes { heading: &heading, ..axes.clone() })?;
+    let [x, y] = axes.clone();
+    let panel = Panel::headed(area, &heading, x, y)?;
     for (index, (_, value)) in CURVES.iter().enumerate() {
         let line = limits.points.iter().filter_map(|point| Some((point.rate, value(point)?)));
         panel.curve(stroke(index), line)?;

@@ -30,30 +30,12 @@ pub enum Sample {
 }
 
 /// Samples with their words.
-#[derive(Clone, Debug, PartialEq)]
 pub struct Legend {
-    columns: usize,
-    entries: Vec<(Sample, String)>,
+    pub columns: usize,
+    pub entries: Vec<(Sample, String)>,
 }
 
 impl Legend {
-    /// Entries in columns, row by row.
-    pub fn new<W: Into<String>>(
-        columns: usize,
-        entries: impl IntoIterator<Item = (Sample, W)>,
-    ) -> Self {
-        let entries = entries.into_iter().map(|(sample, words)| (sample, words.into()));
-        Self { columns, entries: entries.collect() }
-    }
-
-    /// The entry of the scene itself, which may be outside of the picture.
-    pub fn scene(is_seen: bool, words: &str) -> (Sample, String) {
-        match is_seen {
-            true => (Sample::Point(Mark::SCENE), words.to_owned()),
-            false => (Sample::Nothing, format!("{words}, outside of the picture")),
-        }
-    }
-
     /// Width of a column in pixels.
     fn column(&self, width: i32) -> i32 {
         width / self.columns as i32
@@ -100,6 +82,14 @@ fn lines(row: &[(Sample, Vec<String>)]) -> i32 {
 }
 
 impl Sample {
+    /// Its entry, which says so if the part is outside of the picture.
+    pub fn entry(self, is_seen: bool, words: String) -> (Self, String) {
+        match is_seen {
+            true => (self, words),
+            false => (Self::Nothing, format!("{words}, outside of the picture")),
+        }
+    }
+
     /// Draws it with the middle of its left side at a point.
     fn draw(self, area: &Area<'_>, (x, y): (i32, i32)) -> Drawn<()> {
         let right = x + units(SAMPLE.1);

@@ -48,15 +48,15 @@ pub fn limits(
         return Err(ChartError::TooFewPoints);
     }
     meets("vertical", wanted.as_ref(), &stiffness)?;
-    let roomy = |range: Range<f64>| Axis::logarithmic(range.start / ROOM..range.end * ROOM);
-    let rate = Axis::logarithmic(rates);
-    let stiffness = wanted.map_or_else(|| roomy(stiffness), Axis::logarithmic);
-    let is_seen = rate.holds(own.rate) && stiffness.holds(own.stiffness);
-    let upper = Axes::new((rate.clone(), ""), (stiffness, "largest stiffness (N m/rad)"));
-    let lower = Axes::new((rate, "sample rate (Hz)"), (roomy(ripple), "torque ripple (N m)"));
-    let legends = vec![Legend::new(1, legend(note, curves, own, is_seen))];
-    Page { title, width: WIDTH, heights: &PANELS, legends }.draw(|areas| {
-        let (upper, lower) = (Panel::new(&areas[0], upper)?, Panel::new(&areas[1], lower)?);
+    let roomy = |range: Range<f64>| range.start / ROOM..range.end * ROOM;
+    let rate = |name| Axis::logarithmic(rates.clone(), name);
+    let stiffness = wanted.unwrap_or_else(|| roomy(stiffness));
+    let stiffness = Axis::logarithmic(stiffness, "largest stiffness (N m/rad)");
+    let ripple = Axis::logarithmic(roomy(ripple), "torque ripple (N m)");
+    let is_seen = rate("").holds(own.rate) && stiffness.holds(own.stiffness);
+    Page::new(title, &PANELS).legend(1, legend(note, curves, own, is_seen)).draw(|areas| {
+        let upper = Panel::new(&areas[0], rate(""), stiffness)?;
+        let lower = Panel::new(&areas[1], rate("sample rate (Hz)"), ripple)?;
         for (index, curve) in curves.iter().enumerate() {
             let (stroke, points) = (Stroke::of(index, 2), &curve.points);
             upper.curve(stroke, points.iter().map(|p| (p.rate, p.stiffness)))?;
@@ -89,6 +89,6 @@ fn legend(
     let curves = curves.map(|(row, curve)| (Sample::Line(Stroke::of(row, 2)), words(curve)));
     let (k, rate) = (significant(*stiffness, 4), significant(*rate, 5));
     let scene = format!("the scene, {k} N m/rad at {rate} Hz, delay {delay}");
-    let notes = [Legend::scene(is_seen, &scene), (Sample::Nothing, note.to_owned())];
-    curves.chain(notes).collect()
+    let scene = Sample::Point(Mark::SCENE).entry(is_seen, scene);
+    curves.chain([scene, (Sample::Nothing, note.to_owned())]).collect()
 }

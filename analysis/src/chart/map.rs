@@ -25,28 +25,21 @@ pub struct Overlay {
     pub scene: (f64, f64),
 }
 
-/// Grey of a region: the better, the lighter. Hatching is on white.
-fn grey(region: Region) -> RGBColor {
+/// Grey of a region: the better, the lighter; hatched on white where a verdict is missing or wrong.
+fn fill(region: Region) -> Fill {
     match region {
-        Region::Paper | Region::Undecided | Region::Wrong => WHITE,
-        Region::Exact => REGIONS[0],
-        Region::Rejected => REGIONS[1],
-        Region::Unstable => REGIONS[2],
-    }
-}
-
-/// The hatching of regions in which a verdict is missing or wrong.
-fn hatching(region: Region) -> Option<Fill> {
-    match region {
-        Region::Undecided => Some(Fill::Rising),
-        Region::Wrong => Some(Fill::Crossed),
-        _ => None,
+        Region::Paper => Fill::Solid(WHITE),
+        Region::Exact => Fill::Solid(REGIONS[0]),
+        Region::Rejected => Fill::Solid(REGIONS[1]),
+        Region::Unstable => Fill::Solid(REGIONS[2]),
+        Region::Undecided => Fill::Lines(&[Direction::Rising]),
+        Region::Wrong => Fill::Lines(&[Direction::Rising, Direction::Falling]),
     }
 }
 
 /// The regions of the legend, the best first; rare ones only if present.
 fn named(map: &Map, overlay: &Overlay) -> Vec<Region> {
-    let is_usual = |region: Region| overlay.says_stability && hatching(region).is_none();
+    let is_usual = |region| overlay.says_stability && matches!(fill(region), Fill::Solid(_));
     let is_named = |region: &Region| is_usual(*region) || map.share(*region) > 0.0;
     Region::ALL.into_iter().rev().filter(is_named).collect()
 }
@@ -54,11 +47,11 @@ fn named(map: &Map, overlay: &Overlay) -> Vec<Region> {
 /// Draws a map: the regions in greys, the border of the closed form as a broken line, the scene as a cross.
 pub fn map(map: &Map, overlay: &Overlay) -> Result<Picture, ChartError> {
     let [x, y] = overlay.labels;
-    let (x, y) = ((Axis::linear(map.x.clone()), x), (Axis::linear(map.y.clone()), y));
-    let is_seen = x.0.holds(overlay.scene.0) && y.0.holds(overlay.scene.1);
-    let legends = vec![Legend::new(2, legend(map, overlay, is_seen))];
-    Page { title: &overlay.title, width: WIDTH, heights: &[HEIGHT], legends }.draw(|areas| {
-        let mut panel = Panel::bare(&areas[0], Axes::new(x, y))?;
+    let (x, y) = (Axis::linear(map.x.clone(), x), Axis::linear(map.y.clone(), y));
+    let is_seen = x.holds(overlay.scene.0) && y.holds(overlay.scene.1);
+    let page = Page::new(&overlay.title, &[HEIGHT]);
+    page.legend(2, legend(map, overlay, is_seen)).draw(|areas| {
+        let mut panel = Panel::bare(&areas[0], "", x, y)?;
         regions(&panel, map)?;
         hatch(&panel, map)?;
         panel.grid()?;
@@ -81,11 +74,12 @@ fn regions(panel: &Panel<'_, '_>, map: &Map) -> Drawn<()> {
     // Each region together with all better ones, the better ones on top.
     for region in Region::ALL {
         let cells = |column, row| map.at(column, row) >= region;
+        let grey = if let Fill::Solid(grey) = fill(region) { grey } else { WHITE };
         for polygon in polygons(map.columns, map.rows, cells) {
-            panel.fill(grey(region), polygon.iter().map(corner))?;
+            panel.fill(grey, polygon.iter().map(corner))?;
             // A thin line of the same grey closes the seams between parts of a region.
             let seam = polygon.iter().chain(&polygon[..1]).map(corner);
-            panel.curve(Stroke::solid(1).ink(grey(region)), seam)?;
+            panel.curve(Stroke::solid(1).ink(grey), seam)?;
         }
     }
     Ok(())
@@ -98,7 +92,7 @@ fn hatch(panel: &Panel<'_, '_>, map: &Map) -> Drawn<()> {
     for column in 0..map.columns {
         let x = along(width, column, map.columns)..along(width, column + 1, map.columns);
         for row in 0..map.rows {
-            let Some(fill) = hatching(map.at(column, row)) else { continue };
+            let fill @ Fill::Lines(_) = fill(map.at(column, row)) else { continue };
             // Rows are counted from below.
             let top = map.rows - 1 - row;
             let y = along(height, top, map.rows)..along(height, top + 1, map.rows);
@@ -112,11 +106,14 @@ fn hatch(panel: &Panel<'_, '_>, map: &Map) -> Drawn<()> {
 fn legend(map: &Map, overlay: &Overlay, is_seen: bool) -> Vec<(Sample, String)> {
     let region = |region: Region| {
         let share = crate::quantity::significant(100.0 * map.share(region), 3);
-        let fill = hatching(region).unwrap_or(Fill::Solid(grey(region)));
-        (Sample::Region(fill), format!("{} ({share} %)", region.words(overlay.says_stability)))
+        (
+            Sample::Region(fill(region)),
+            format!("{} ({share} %)", region.words(overlay.says_stability)),
+        )
     };
     let border = overlay.border.as_ref();
     let border = border.map(|border| (Sample::Line(BORDER), border.name.to_owned()));
     let regions = named(map, overlay).into_iter().map(region);
-    regions.chain(border).chain([Legend::scene(is_seen, "the scene")]).collect()
+    let scene = Sample::Point(Mark::SCENE).entry(is_seen, "the scene".to_owned());
+    regions.chain(border).chain([scene]).collect()
 }

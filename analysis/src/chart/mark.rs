@@ -40,8 +40,6 @@ const FORMS: [Form; FAMILIES.len()] = [
 ];
 
 impl Mark {
-    /// Half the size of a family's mark, in pixels.
-    pub const FAMILY: i32 = 4;
     /// The scene itself.
     pub const SCENE: Self = Self { form: Form::Cross, half: 7, width: 2, ink: BLACK };
     /// A point of a measurement or of a curve.
@@ -56,7 +54,7 @@ impl Mark {
     /// The mark of the family with this number; the marks repeat.
     pub const fn of(family: usize) -> Self {
         let family = family % FAMILIES.len();
-        Self { form: FORMS[family], half: Self::FAMILY, width: 2, ink: FAMILIES[family] }
+        Self { form: FORMS[family], half: 4, width: 2, ink: FAMILIES[family] }
     }
 
     pub const fn ink(self) -> RGBColor {

@@ -41,14 +41,16 @@ use axis::Axis;
 use base::*;
 pub use data::{Cell, Chart, Data};
 pub use error::ChartError;
-use hatch::Fill;
-use legend::{Legend, Sample};
+use hatch::{Direction, Fill};
+use legend::Sample;
 use mark::Mark;
 use page::{HEIGHT, Page, WIDTH};
 use palette::FORBIDDEN;
-use panel::{Axes, Panel};
+use panel::Panel;
 pub use picture::{Picture, has_extension};
 use stroke::Stroke;
+
+use crate::nyquist::{is_drawable, span};
 
 /// Ranges of the axes, in place of the default ones.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -84,22 +86,10 @@ fn padded(range: Range<f64>, part: f64) -> Range<f64> {
     middle - half..middle + half
 }
 
-/// Whether a value can be on an axis: small enough that ranges do not overflow.
-fn is_drawable(value: f64) -> bool {
-    value.abs() <= 1e300
-}
-
 /// Whether an axis can have this range: drawable ends, with distinguishable numbers between them.
 pub fn is_range(range: &Range<f64>) -> bool {
     let width = range.end - range.start;
     is_drawable(range.start) && is_drawable(range.end) && width >= f64::MIN_POSITIVE
-}
-
-/// The range of some values; from zero to zero if there are none.
-fn span(values: impl Iterator<Item = f64>) -> Range<f64> {
-    let mut finite = values.filter(|value| is_drawable(*value));
-    let first = finite.next().unwrap_or(0.0);
-    finite.fold(first..first, |range, value| range.start.min(value)..range.end.max(value))
 }
 
 #[cfg(test)]

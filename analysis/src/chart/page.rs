@@ -4,7 +4,7 @@ use plotters::prelude::*;
 
 use super::base::{Area, Drawn, UNITS, text, units};
 use super::error::ChartError;
-use super::legend::Legend;
+use super::legend::{Legend, Sample};
 use super::picture::Picture;
 use super::strokes::join_strokes;
 use crate::quantity::shortened;
@@ -23,15 +23,35 @@ const TITLE_ROOM: i32 = TOP + 26;
 const APART: i32 = 8;
 
 pub struct Page<'p> {
-    pub title: &'p str,
-    /// Its width in pixels.
-    pub width: i32,
-    /// Heights of the parts that are painted, in pixels.
-    pub heights: &'p [i32],
-    pub legends: Vec<Legend>,
+    title: &'p str,
+    /// In pixels.
+    width: i32,
+    heights: &'p [i32],
+    legends: Vec<Legend>,
 }
 
-impl Page<'_> {
+impl<'p> Page<'p> {
+    /// A page of the usual width; `heights` are those of the parts that are painted, in pixels.
+    pub fn new(title: &'p str, heights: &'p [i32]) -> Self {
+        Self { title, width: WIDTH, heights, legends: Vec::new() }
+    }
+
+    /// With another width in pixels.
+    pub fn wide(self, width: i32) -> Self {
+        Self { width, ..self }
+    }
+
+    /// Below it a legend more: entries in columns, row by row.
+    pub fn legend<W: Into<String>>(
+        mut self,
+        columns: usize,
+        entries: impl IntoIterator<Item = (Sample, W)>,
+    ) -> Self {
+        let entries = entries.into_iter().map(|(sample, words)| (sample, words.into()));
+        self.legends.push(Legend { columns, entries: entries.collect() });
+        self
+    }
+
     /// Draws it; `paint` gets an area for each height.
     pub(super) fn draw(
         &self,

@@ -21,29 +21,10 @@ const BESIDE: i32 = units(78);
 const TICKS_APART: (i32, i32) = (62, 28);
 const MOST_TICKS: usize = 11;
 
-/// The axes of a panel, with their names and a heading.
-#[derive(Clone, Debug)]
-pub struct Axes<'n> {
-    pub x: Axis,
-    pub y: Axis,
-    /// Name of the horizontal axis with its unit; empty if it shares the axis of the panel below.
-    pub x_name: &'n str,
-    /// Name of the vertical axis with its unit.
-    pub y_name: &'n str,
-    /// A line above the panel; empty if there is none.
-    pub heading: &'n str,
-}
-
-impl<'n> Axes<'n> {
-    /// Axes with their names, without a heading.
-    pub fn new((x, x_name): (Axis, &'n str), (y, y_name): (Axis, &'n str)) -> Self {
-        Self { x, y, x_name, y_name, heading: "" }
-    }
-}
-
 pub struct Panel<'a, 'b> {
     chart: ChartContext<'a, SVGBackend<'b>, Cartesian2d<Axis, Axis>>,
-    axes: Axes<'a>,
+    x: Axis,
+    y: Axis,
     /// The area between the axes, in units of the drawing from its upper left corner.
     pub area: Area<'b>,
     /// The whole of it.
@@ -52,26 +33,31 @@ pub struct Panel<'a, 'b> {
 
 impl<'a, 'b> Panel<'a, 'b> {
     /// A panel with its axes and grid.
-    pub fn new(area: &'a Area<'b>, axes: Axes<'a>) -> Drawn<Self> {
-        let mut panel = Self::bare(area, axes)?;
+    pub fn new(area: &'a Area<'b>, x: Axis, y: Axis) -> Drawn<Self> {
+        Self::headed(area, "", x, y)
+    }
+
+    /// The same below a line of words, if there are any.
+    pub fn headed(area: &'a Area<'b>, heading: &str, x: Axis, y: Axis) -> Drawn<Self> {
+        let mut panel = Self::bare(area, heading, x, y)?;
         panel.grid()?;
         Ok(panel)
     }
 
     /// A panel without axes and grid, which are drawn over its regions with [`Self::grid`].
-    pub fn bare(area: &'a Area<'b>, axes: Axes<'a>) -> Drawn<Self> {
+    pub fn bare(area: &'a Area<'b>, heading: &str, x: Axis, y: Axis) -> Drawn<Self> {
         let mut chart = ChartBuilder::on(area);
-        let below = if axes.x_name.is_empty() { NUMBERS } else { NUMBERS_AND_NAME };
+        let below = if x.name.is_empty() { NUMBERS } else { NUMBERS_AND_NAME };
         chart.margin(MARGIN).margin_right(MARGIN_RIGHT).margin_bottom(units(2));
         chart.x_label_area_size(below).y_label_area_size(BESIDE);
-        if !axes.heading.is_empty() {
-            chart.margin_top(units(4)).caption(axes.heading, text(LABEL));
+        if !heading.is_empty() {
+            chart.margin_top(units(4)).caption(heading, text(LABEL));
         }
-        let chart = chart.build_cartesian_2d(axes.x.clone(), axes.y.clone())?;
+        let chart = chart.build_cartesian_2d(x.clone(), y.clone())?;
         let area = chart.plotting_area().strip_coord_spec();
         let (width, height) = area.dim_in_pixel();
         let frame = Frame { right: f64::from(width), bottom: f64::from(height) };
-        Ok(Self { chart, axes, area, frame })
+        Ok(Self { chart, x, y, area, frame })
     }
 
     pub fn grid(&mut self) -> Drawn<()> {
@@ -84,18 +70,17 @@ impl<'a, 'b> Panel<'a, 'b> {
             .set_all_tick_mark_size(units(5))
             .x_labels(ticks(self.frame.right, TICKS_APART.0))
             .y_labels(ticks(self.frame.bottom, TICKS_APART.1))
-            .y_desc(self.axes.y_name)
+            .y_desc(self.y.name)
             .label_style(text(LABEL));
-        if !self.axes.x_name.is_empty() {
-            mesh.x_desc(self.axes.x_name);
+        if !self.x.name.is_empty() {
+            mesh.x_desc(self.x.name);
         }
         mesh.draw()
     }
 
     /// The place of a value in the drawing.
     pub fn place(&self, (x, y): (f64, f64)) -> Place {
-        let Axes { x: across, y: up, .. } = &self.axes;
-        (across.part(x) * self.frame.right, (1.0 - up.part(y)) * self.frame.bottom)
+        (self.x.part(x) * self.frame.right, (1.0 - self.y.part(y)) * self.frame.bottom)
     }
 
     /// The point of a value, in whole units.
@@ -110,7 +95,7 @@ impl<'a, 'b> Panel<'a, 'b> {
 
     /// Whether a value is in the panel.
     pub fn holds(&self, (x, y): (f64, f64)) -> bool {
-        self.axes.x.holds(x) && self.axes.y.holds(y)
+        self.x.holds(x) && self.y.holds(y)
     }
 
     /// Draws a line through places.

@@ -40,28 +40,27 @@ pub fn profile(
         let words = format!("torque limit, {} N m", significant(limit, 4));
         entries.push((Sample::Line(LIMIT), words));
     }
-    let legends = vec![Legend::new(1, entries)];
-    Page { title, width: WIDTH, heights: &PANELS, legends }.draw(|areas| {
+    Page::new(title, &PANELS).legend(1, entries).draw(|areas| {
         torque(&areas[0], curve, limit)?;
         let millijoules = || curve.points.iter().map(|point| (point[0], 1e3 * point[2]));
-        let y = Axis::linear(padded(span(millijoules().map(|point| point.1)), 0.08));
-        let axes = Axes::new((angles(curve).1, "angle (rad)"), (y, "potential (mJ)"));
-        Panel::new(&areas[1], axes)?.curve(CURVE, millijoules())
+        let x = Axis::linear(angles(curve), "angle (rad)");
+        let y = padded(span(millijoules().map(|point| point.1)), 0.08);
+        let panel = Panel::new(&areas[1], x, Axis::linear(y, "potential (mJ)"))?;
+        panel.curve(CURVE, millijoules())
     })
 }
 
-fn angles(curve: &ProfileCurve) -> (Range<f64>, Axis) {
-    let range = padded(span(curve.points.iter().map(|point| point[0])), 0.02);
-    (range.clone(), Axis::linear(range))
+fn angles(curve: &ProfileCurve) -> Range<f64> {
+    padded(span(curve.points.iter().map(|point| point[0])), 0.02)
 }
 
 fn torque(area: &Area<'_>, curve: &ProfileCurve, limit: Option<f64>) -> Drawn<()> {
-    let (x, angles) = angles(curve);
+    let x = angles(curve);
     let of_branches = curve.branches.iter().flat_map(|branch| &branch.points);
     let own = curve.points.iter().map(|p| p[1]).chain(of_branches.map(|p| p[1]));
     let y = padded(span(own), 0.12);
-    let axes = Axes::new((angles, ""), (Axis::linear(y.clone()), "torque (N m)"));
-    let panel = Panel::new(area, axes)?;
+    let axes = (Axis::linear(x.clone(), ""), Axis::linear(y.clone(), "torque (N m)"));
+    let panel = Panel::new(area, axes.0, axes.1)?;
     panel.level(CURVE, 0.0)?;
     for limit in limit.into_iter().flat_map(|limit| [-limit, limit]) {
         panel.level(LIMIT, limit)?;

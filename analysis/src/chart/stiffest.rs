@@ -23,20 +23,17 @@ pub fn stiffest(
     if rates.start >= rates.end || felt.start <= 0.0 {
         return Err(ChartError::TooFewPoints);
     }
-    let axes = Axes::new(
-        (Axis::logarithmic(rates.start / ROOM..rates.end * ROOM), "rate (Hz)"),
-        (Axis::logarithmic(felt.start / ROOM..felt.end * ROOM), "felt stiffness (N m/rad)"),
-    );
-    let names = curves.iter().enumerate();
-    let names =
-        names.map(|(row, (name, _))| (Sample::Line(Stroke::of(row, 2)), (*name).to_owned()));
+    let roomy =
+        |range: Range<f64>, name| Axis::logarithmic(range.start / ROOM..range.end * ROOM, name);
+    let line = |row| Sample::Line(Stroke::of(row, 2));
+    let names = curves.iter().enumerate().map(|(row, (name, _))| (line(row), (*name).to_owned()));
     let best = found.map(|(rate, stiffness)| {
         let [rate, stiffness] = [rate, stiffness].map(|value| significant(value, 3));
-        Legend::scene(true, &format!("found: {stiffness} N m/rad at {rate} Hz"))
+        (Sample::Point(Mark::SCENE), format!("found: {stiffness} N m/rad at {rate} Hz"))
     });
-    let legends = vec![Legend::new(2, names.chain(best))];
-    Page { title, width: WIDTH, heights: &[HEIGHT], legends }.draw(|areas| {
-        let panel = Panel::new(&areas[0], axes)?;
+    Page::new(title, &[HEIGHT]).legend(2, names.chain(best)).draw(|areas| {
+        let (x, y) = (roomy(rates, "rate (Hz)"), roomy(felt, "felt stiffness (N m/rad)"));
+        let panel = Panel::new(&areas[0], x, y)?;
         for (row, (_, curve)) in curves.iter().enumerate() {
             panel.curve(Stroke::of(row, 2), curve.iter().copied())?;
         }

@@ -19,11 +19,8 @@ pub fn data(trace: Trace) -> Data {
         let motion = [trace.time[i].into(), trace.position[i].into(), known(&velocity)];
         motion.into_iter().chain(torques).chain([limit.into()]).collect()
     });
-    let header: &[_] = match time_unit {
-        TimeUnit::Seconds => &["time", "position", "velocity", "torque", "hand", "limit"],
-        TimeUnit::Ticks => &["tick", "position", "velocity", "torque", "hand", "limit"],
-    };
-    Data::new(header, rows)
+    let time = if time_unit == TimeUnit::Ticks { "tick" } else { "time" };
+    Data::new(format!("{time},position,velocity,torque,hand,limit"), rows)
 }
 
 /// The reasons for limited torques, each once, with their fills and meanings.
@@ -64,8 +61,8 @@ pub fn trace(trace: &Trace, wanted: &Window) -> Result<Picture, ChartError> {
     let fills = reasons.iter().map(|(_, fill, words)| (Sample::Region(*fill), (*words).into()));
     let lines = lines(trace, &times, &angles).into_iter();
     let notes = notes(trace).into_iter().map(|note| (Sample::Nothing, note));
-    let legends = vec![Legend::new(2, lines.chain(fills)), Legend::new(1, notes)];
-    Page { title: &trace.title, width: WIDTH, heights: &PANELS, legends }.draw(|areas| {
+    let page = Page::new(&trace.title, &PANELS).legend(2, lines.chain(fills)).legend(1, notes);
+    page.draw(|areas| {
         position(&areas[0], trace, &times, angles)?;
         velocity(&areas[1], trace, &times)?;
         torque(&areas[2], trace, &times, &reasons)
@@ -73,7 +70,8 @@ pub fn trace(trace: &Trace, wanted: &Window) -> Result<Picture, ChartError> {
 }
 
 fn position(area: &Area<'_>, trace: &Trace, times: &Range<f64>, y: Range<f64>) -> Drawn<()> {
-    let panel = panel(area, times, y, ("", "angle (rad)"))?;
+    let y = Axis::linear(y, "angle (rad)");
+    let panel = Panel::new(area, Axis::linear(times.clone(), ""), y)?;
     if let Some(face) = trace.face {
         panel.level(FACE, face)?;
     }
@@ -91,20 +89,10 @@ fn velocity(area: &Area<'_>, trace: &Trace, times: &Range<f64>) -> Drawn<()> {
         TimeUnit::Seconds => "velocity (rad/s)",
         TimeUnit::Ticks => "velocity (rad/tick)",
     };
-    let panel = panel(area, times, y, ("", name))?;
+    let panel = Panel::new(area, Axis::linear(times.clone(), ""), Axis::linear(y, name))?;
     panel.level(ZERO, 0.0)?;
     panel.curve(VELOCITY, sampled(&velocity, trace))?;
     release(&panel, trace)
-}
-
-fn panel<'a, 'b>(
-    area: &'a Area<'b>,
-    times: &Range<f64>,
-    y: Range<f64>,
-    (x_name, y_name): (&'a str, &'a str),
-) -> Drawn<Panel<'a, 'b>> {
-    let x = (Axis::linear(times.clone()), x_name);
-    Panel::new(area, Axes::new(x, (Axis::linear(y), y_name)))
 }
 
 /// The line at which the hand lets go.
@@ -126,10 +114,7 @@ fn lines(trace: &Trace, times: &Range<f64>, angles: &Range<f64>) -> Vec<(Sample,
     let mut lines = vec![(Sample::Line(DEVICE), "device".to_owned())];
     // A level, which may be outside of its panel.
     let mut level = |is_seen: bool, stroke: Stroke, words: String| {
-        lines.push(match is_seen {
-            true => (Sample::Line(stroke), words),
-            false => (Sample::Nothing, format!("{words}, outside of the picture")),
-        });
+        lines.push(Sample::Line(stroke).entry(is_seen, words));
     };
     if let Some(face) = trace.face {
         let words = format!("face of the wall, {} rad", significant(face, 4));
@@ -192,8 +177,12 @@ fn torque(
     reasons: &[(TickStatus, Fill, &str)],
 ) -> Drawn<()> {
     let (y, limits) = torque_axis(trace, times);
-    let x_name = format!("time ({})", unit(trace));
-    let panel = panel(area, times, y, (&x_name, "torque (N m)"))?;
+    let x = match trace.time_unit {
+        TimeUnit::Seconds => "time (s)",
+        TimeUnit::Ticks => "time (ticks)",
+    };
+    let x = Axis::linear(times.clone(), x);
+    let panel = Panel::new(area, x, Axis::linear(y, "torque (N m)"))?;
     for &(status, fill, _) in reasons {
         shade(&panel, trace, times, (status, fill))?;
     }

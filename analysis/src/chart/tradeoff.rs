@@ -29,12 +29,10 @@ pub fn tradeoff(table: &Tradeoff, error: usize) -> Result<Picture, ChartError> {
     let families = table.families().into_iter().enumerate();
     let families = families.map(|(index, name)| (Sample::Point(Mark::of(index)), name));
     let front = "front: no other method of the table is both cheaper and better";
-    let legends = vec![
-        Legend::new((width / ENTRY) as usize, families),
-        Legend::new(1, [(Sample::Line(FRONT), front)]),
-    ];
     let heights = [PANEL.1 * rows as i32];
-    Page { title: table.comparison.title, width, heights: &heights, legends }.draw(|areas| {
+    let page = Page::new(table.comparison.title, &heights).wide(width);
+    let page = page.legend((width / ENTRY) as usize, families);
+    page.legend(1, [(Sample::Line(FRONT), front)]).draw(|areas| {
         let areas = areas[0].split_evenly((rows, columns));
         areas
             .iter()
@@ -50,10 +48,9 @@ fn range(
     value: impl Fn(&Method) -> Option<f64>,
 ) -> Option<Range<f64>> {
     let values = table.methods.iter().filter_map(value).map(|value| value.max(figure.floor));
-    let logs = values.map(f64::log10).filter(|log| log.is_finite());
-    let (low, high) = logs
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), log| (low.min(log), high.max(log)));
-    (low <= high).then(|| 10_f64.powf(low - ROOM)..10_f64.powf(high + ROOM))
+    let logs: Vec<_> = values.map(f64::log10).filter(|log| log.is_finite()).collect();
+    let Range { start, end } = span(logs.iter().copied());
+    (!logs.is_empty()).then(|| 10_f64.powf(start - ROOM)..10_f64.powf(end + ROOM))
 }
 
 /// The methods of a case by one error.
@@ -95,10 +92,9 @@ impl Methods<'_> {
         if fails {
             errors.end *= 10_f64.powf(2.0 * ROOM);
         }
-        let x = (Axis::logarithmic(costs), cost.label);
-        let y = (Axis::logarithmic(errors), figure.label);
-        let panel = Panel::new(area, Axes { heading: self.case, ..Axes::new(x, y) })?;
-        self.paint_methods(&panel, top)
+        let (x, y) =
+            (Axis::logarithmic(costs, cost.label), Axis::logarithmic(errors, figure.label));
+        self.paint_methods(&Panel::headed(area, self.case, x, y)?, top)
     }
 
     fn paint_methods(&self, panel: &Panel<'_, '_>, top: f64) -> Drawn<()> {

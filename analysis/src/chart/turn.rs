@@ -17,12 +17,12 @@ pub fn turn(title: &str, turn: &FeltTurn) -> Result<Picture, ChartError> {
     let dots = "torque of the servo's codes, a dot each tick".to_owned();
     let hand = (Sample::Line(HAND), "set-point of the hand".to_owned());
     let entries = [(Sample::Point(Mark::FAINT), dots)].into_iter();
-    let legends = vec![Legend::new(1, entries.chain(slopes(&turn.curve)).chain([hand]))];
-    Page { title, width: WIDTH, heights: &PANELS, legends }.draw(|areas| {
+    let entries = entries.chain(slopes(&turn.curve)).chain([hand]);
+    Page::new(title, &PANELS).legend(1, entries).draw(|areas| {
         over_angle(&areas[0], turn)?;
         let angles = [(HAND, &turn.setpoint[..]), (MOTION, &turn.angle)];
-        over_time(&areas[1], &turn.time, &angles, ("", "angle (rad)"))?;
-        over_time(&areas[2], &turn.time, &[(MOTION, &turn.torque)], ("time (s)", "torque (N m)"))
+        over_time(&areas[1], &turn.time, &angles, ["", "angle (rad)"])?;
+        over_time(&areas[2], &turn.time, &[(MOTION, &turn.torque)], ["time (s)", "torque (N m)"])
     })
 }
 
@@ -32,11 +32,8 @@ fn over_angle(area: &Area<'_>, turn: &FeltTurn) -> Drawn<()> {
     let x = span(curve.points.iter().map(|point| point[0]));
     let torques = curve.points.iter().map(|point| point[1]).chain(turn.torque.iter().copied());
     let y = padded(span(torques), 0.2);
-    let axes = Axes::new(
-        (Axis::linear(x.clone()), "angle (rad)"),
-        (Axis::linear(y.clone()), "torque (N m)"),
-    );
-    let panel = Panel::new(area, axes)?;
+    let axes = (Axis::linear(x.clone(), "angle (rad)"), Axis::linear(y.clone(), "torque (N m)"));
+    let panel = Panel::new(area, axes.0, axes.1)?;
     panel.level(PROFILE, 0.0)?;
     // One dot per pixel.
     let mut drawn = HashSet::new();
@@ -54,12 +51,11 @@ fn over_time(
     area: &Area<'_>,
     time: &[f64],
     lines: &[(Stroke, &[f64])],
-    (x_name, y_name): (&str, &str),
+    [x_name, y_name]: [&'static str; 2],
 ) -> Drawn<()> {
     let end = time.last().copied().unwrap_or(1.0);
     let y = padded(span(lines.iter().flat_map(|line| line.1).copied()), 0.12);
-    let axes = Axes::new((Axis::linear(0.0..end), x_name), (Axis::linear(y), y_name));
-    let panel = Panel::new(area, axes)?;
+    let panel = Panel::new(area, Axis::linear(0.0..end, x_name), Axis::linear(y, y_name))?;
     lines.iter().try_for_each(|(stroke, values)| {
         panel.curve(*stroke, time.iter().copied().zip(values.iter().copied()))
     })

@@ -32,7 +32,7 @@ use crate::response::Response;
 use crate::simulation::unbuildable;
 use crate::unit_circle_poles::{UnitCirclePole, outside, poles};
 
-pub use window::{critical_lines, usual_window};
+pub use window::{critical_lines, is_drawable, span, usual_window};
 
 /// Points between two poles on half the unit circle. They are denser towards the poles, where the
 /// curve is longest.
@@ -250,6 +250,11 @@ impl NyquistScene {
         })
     }
 
+    /// The curves that must keep clear of the critical line.
+    pub fn judged_curves(&self) -> impl Iterator<Item = &Curve> {
+        self.curves.iter().filter(|curve| curve.role.is_judged())
+    }
+
     /// Distance in N m s/rad of the judged curve, or of its bound, to the right of the critical line:
     /// negative where it crosses the line, minus infinity where poles or the coupling rule out a certificate,
     /// NaN where no bound is known.
@@ -409,3 +414,6 @@ fn around(theta: Option<f64>) -> impl Iterator<Item = f64> {
         beside.chain([theta])
     })
 }
+
+#[cfg(test)]
+mod tests;

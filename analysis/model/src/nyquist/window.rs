@@ -52,9 +52,14 @@ pub fn usual_window(
     (x, wanted_y.unwrap_or(-height..height))
 }
 
-/// The range of the values that are small enough for an axis; from zero to zero if there are none.
-fn span(values: impl Iterator<Item = f64>) -> Range<f64> {
-    let mut finite = values.filter(|value| value.abs() <= 1e300);
+/// Whether a value can be on an axis: small enough that ranges do not overflow.
+pub fn is_drawable(value: f64) -> bool {
+    value.abs() <= 1e300
+}
+
+/// The range of the values that can be on an axis; from zero to zero if there are none.
+pub fn span(values: impl Iterator<Item = f64>) -> Range<f64> {
+    let mut finite = values.filter(|value| is_drawable(*value));
     let first = finite.next().unwrap_or(0.0);
     finite.fold(first..first, |range, value| range.start.min(value)..range.end.max(value))
 }

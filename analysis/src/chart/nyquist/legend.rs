@@ -1,7 +1,7 @@
 //! The legend below a Nyquist plot.
 
-use super::super::legend::{Legend, Sample};
-use super::{BOUND, CRITICAL, NyquistScene, lines};
+use super::super::legend::Sample;
+use super::{BOUND, CRITICAL, Line, NyquistScene, lines};
 use crate::nyquist::{critical_lines, words};
 use crate::quantity::{shortened, significant};
 
@@ -10,15 +10,15 @@ const LONGEST_NAME: usize = 48;
 
 /// Of each scene its curves and its bound, of which only the first line of words has a sample; then the lines
 /// that are not to be crossed.
-pub(super) fn legend(scenes: &[NyquistScene]) -> Legend {
+pub(super) fn entries(scenes: &[NyquistScene]) -> impl Iterator<Item = (Sample, String)> {
     let is_single = scenes.len() == 1;
-    let of = |(index, (scene, lines)): (usize, (&NyquistScene, Vec<super::Line<'_>>))| {
+    let of = |(index, (scene, lines)): (usize, (&NyquistScene, Vec<Line<'_>>))| {
         let name = match is_single {
             true => String::new(),
             false => format!("{}: {}: ", index + 1, shortened(&scene.name, LONGEST_NAME)),
         };
-        let curves = lines.into_iter().map(|line| {
-            (Sample::Line(line.stroke), words::curve(&name, scene, line.curve, is_single))
+        let curves = lines.into_iter().map(|(stroke, curve)| {
+            (Sample::Line(stroke), words::curve(&name, scene, curve, is_single))
         });
         let sample = scene.bound.map_or(Sample::Nothing, |_| Sample::Line(BOUND));
         let bound = words::bound(&name, scene).map(|words| (sample, words));
@@ -35,6 +35,5 @@ pub(super) fn legend(scenes: &[NyquistScene]) -> Legend {
     let critical = |(line, name): (f64, &str)| {
         (Sample::Line(CRITICAL), format!("critical line, {name} = {}", significant(line, 4)))
     };
-    let critical = critical_lines(scenes).into_iter().map(critical);
-    Legend::new(1, rows.chain(critical))
+    rows.chain(critical_lines(scenes).into_iter().map(critical))
 }

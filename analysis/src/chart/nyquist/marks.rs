@@ -28,7 +28,8 @@ pub(super) fn draw(
     let end = whole(&(panel.frame.right, panel.frame.bottom));
     let mut labels = Labels::within(Block::new((0, 0), end));
     keep_clear_of_lines(panel, scenes, &mut labels);
-    let judged = || scenes.iter().flat_map(judged_curves);
+    let judged =
+        || scenes.iter().flat_map(|scene| scene.judged_curves().map(move |curve| (scene, curve)));
     for (scene, curve) in judged() {
         if let Some((_, _, value)) = scene.phase_margin(curve) {
             panel.mark(Mark::FRAME, value)?;
@@ -46,17 +47,11 @@ pub(super) fn draw(
             }
         }
     }
-    let minima = minima.iter().map(|(value, number)| (panel.point(*value), number));
-    let minima: Vec<_> = minima.collect();
-    minima.iter().for_each(|(point, _)| labels.mark(*point, Mark::RING.reach()));
-    marked.iter().for_each(|(place, _)| labels.mark(whole(place), Mark::DOT.reach()));
-    for (point, number) in minima {
-        labels.write(&panel.area, point, number)?;
-    }
-    for (place, name) in marked {
-        labels.write(&panel.area, whole(&place), &name)?;
-    }
-    Ok(())
+    let minima = minima.iter().map(|(value, number)| (panel.point(*value), number, Mark::RING));
+    let marked = marked.iter().map(|(place, name)| (whole(place), name, Mark::DOT));
+    let named: Vec<_> = minima.chain(marked).collect();
+    named.iter().for_each(|(point, _, mark)| labels.mark(*point, mark.reach()));
+    named.iter().try_for_each(|(point, name, _)| labels.write(&panel.area, *point, name))
 }
 
 /// Keeps names off all lines and curves.
@@ -64,7 +59,8 @@ fn keep_clear_of_lines(panel: &Panel<'_, '_>, scenes: &[NyquistScene], labels: &
     let all = panel.frame;
     let curves = || scenes.iter().flat_map(|scene| &scene.curves);
     let limits = scenes.iter().flat_map(|scene| [scene.limit, scene.bound]).flatten();
-    let hairlines = curves().filter(|curve| curve.role.is_judged()).filter_map(|c| c.asymptote);
+    let judged = scenes.iter().flat_map(NyquistScene::judged_curves);
+    let hairlines = judged.filter_map(|curve| curve.asymptote);
     let upright = limits.map(|value| -value).chain(hairlines).chain([0.0]);
     for x in upright.map(|value| panel.place((value, 0.0)).0) {
         if all.contains((x, 0.0)) {
@@ -84,12 +80,6 @@ fn keep_clear_of_lines(panel: &Panel<'_, '_>, scenes: &[NyquistScene], labels: &
             }
         }
     }
-}
-
-/// The curves of a scene that are judged.
-fn judged_curves(scene: &NyquistScene) -> impl Iterator<Item = (&NyquistScene, &Curve)> {
-    let judged = scene.curves.iter().filter(|curve| curve.role.is_judged());
-    judged.map(move |curve| (scene, curve))
 }
 
 /// Frequencies in Hz up to half the sample rate, round ones last, because the ends have priority.

@@ -15,34 +15,26 @@ const ASYMPTOTE: Stroke = Stroke::dashed(&[1, 7], 1);
 const CRITICAL: Stroke = Stroke::dashed(&[8, 5], 2);
 const BOUND: Stroke = Stroke::solid(3);
 
-struct Line<'j> {
-    stroke: Stroke,
-    curve: &'j Curve,
-}
+/// A curve and its line.
+type Line<'j> = (Stroke, &'j Curve);
 
-/// Each judged curve takes a pattern; the others take the pattern of their scene.
+/// The lines of each scene, grey for curves that are not judged. Each curve takes a pattern, except an
+/// environment alone, which takes the first pattern of its scene.
 fn lines(scenes: &[NyquistScene]) -> Vec<Vec<Line<'_>>> {
-    let mut used = 0;
-    let mut of = |scene: &'_ NyquistScene| -> Vec<usize> {
-        let first = used;
-        let number = |curve: &Curve| match curve.role {
-            Role::Alone => first,
-            _ => {
-                used += 1;
-                used - 1
-            }
-        };
-        scene.curves.iter().map(number).collect()
-    };
-    let line = |(curve, number): (_, usize)| Line { stroke: stroke(curve, number), curve };
-    let numbers: Vec<Vec<usize>> = scenes.iter().map(&mut of).collect();
-    scenes.iter().zip(numbers).map(|(s, n)| s.curves.iter().zip(n).map(line).collect()).collect()
-}
-
-/// The line of a curve, grey if the curve is not judged.
-fn stroke(curve: &Curve, number: usize) -> Stroke {
-    let stroke = Stroke::of(number, 2);
-    if curve.role.is_judged() { stroke } else { stroke.faint() }
+    let mut lines = Vec::new();
+    let mut unused = 0;
+    for scene in scenes {
+        let first = unused;
+        let mut of_scene = Vec::new();
+        for curve in &scene.curves {
+            let is_alone = curve.role == Role::Alone;
+            let stroke = Stroke::of(if is_alone { first } else { unused }, 2);
+            unused += usize::from(!is_alone);
+            of_scene.push((if curve.role.is_judged() { stroke } else { stroke.faint() }, curve));
+        }
+        lines.push(of_scene);
+    }
+    lines
 }
 
 /// Draws the Nyquist plots of named scenes for velocity, `(T z / (z - 1)) G`: the judged curve in black, with
@@ -64,9 +56,8 @@ pub fn nyquist(
     let tallest = span(values().map(|value| value.1.abs())).end;
     meets("horizontal", wanted.x.as_ref(), &real)?;
     meets("vertical", wanted.y.as_ref(), &(-tallest..tallest))?;
-    let legends = vec![legend::legend(&scenes)];
-    Page { title, width: WIDTH, heights: &[HEIGHT], legends }
-        .draw(|areas| paint(&areas[0], &scenes, wanted))
+    let page = Page::new(title, &[HEIGHT]).legend(1, legend::entries(&scenes));
+    page.draw(|areas| paint(&areas[0], &scenes, wanted))
 }
 
 fn judged(scenes: &[(String, Scene)]) -> Result<Vec<NyquistScene>, ChartError> {
@@ -88,26 +79,18 @@ pub fn data(scenes: &[(String, Scene)]) -> Result<Data, ChartError> {
             })
         })
     });
-    let header = &[
-        "scene",
-        "curve",
-        "angle (rad)",
-        "frequency (Hz)",
-        "real part (N m s/rad)",
-        "imaginary part (N m s/rad)",
-        "critical line (N m s/rad)",
-        "bound (N m s/rad)",
-    ];
+    let header = "scene,curve,angle (rad),frequency (Hz),real part (N m s/rad),\
+                  imaginary part (N m s/rad),critical line (N m s/rad),bound (N m s/rad)";
     Ok(Data::new(header, rows))
 }
 
 fn paint(area: &Area<'_>, scenes: &[NyquistScene], wanted: &Window) -> Drawn<()> {
     let (x, y) = usual_window(scenes, wanted.x.clone(), wanted.y.clone());
-    let axes = Axes::new(
-        (Axis::linear(x.clone()), "real part (N m s/rad)"),
-        (Axis::linear(y.clone()), "imaginary part (N m s/rad)"),
+    let (real, imaginary) = (
+        Axis::linear(x.clone(), "real part (N m s/rad)"),
+        Axis::linear(y.clone(), "imaginary part (N m s/rad)"),
     );
-    let mut panel = Panel::bare(area, axes)?;
+    let mut panel = Panel::bare(area, "", real, imaginary)?;
     let criticals = critical_lines(scenes);
     // The region left of all lines is forbidden for every scene; without any line, the whole plane.
     let end = criticals.first().map_or(x.end, |line| line.0);
@@ -126,8 +109,7 @@ fn paint(area: &Area<'_>, scenes: &[NyquistScene], wanted: &Window) -> Drawn<()>
 
 /// The curve, and in a thinner line its mirror image for negative angles, with arrows in the direction of
 /// rising angles; and its asymptote at rest, if it goes to infinity, as a hairline.
-fn draw_curve(panel: &Panel<'_, '_>, line: &Line<'_>) -> Drawn<()> {
-    let Line { stroke, curve } = line;
+fn draw_curve(panel: &Panel<'_, '_>, (stroke, curve): &Line<'_>) -> Drawn<()> {
     let judged = curve.role.is_judged();
     if let Some(re) = curve.asymptote.filter(|_| judged) {
         panel.upright(ASYMPTOTE, re)?;
@@ -163,10 +145,10 @@ fn draw_minima(
         (a.0 - b.0).abs() < 0.04 * width && (a.1 - b.1).abs() < 0.1 * height
     };
     let mut labels: Vec<((f64, f64), String)> = Vec::new();
-    let marked = scenes.iter().enumerate().flat_map(|(index, scene)| {
-        scene.curves.iter().filter(|curve| curve.role.is_judged()).map(move |curve| (index, curve))
-    });
-    for (index, curve) in marked {
+    let numbered = (1_usize..)
+        .zip(scenes)
+        .flat_map(|(number, scene)| scene.judged_curves().map(move |curve| (number, curve)));
+    for (number, curve) in numbered {
         let Some(alpha) = curve.alpha else { continue };
         let at = curve.minimum.filter(|&point| panel.holds(point)).unwrap_or((-alpha, 0.0));
         panel.mark(Mark::RING, at)?;
@@ -174,13 +156,10 @@ fn draw_minima(
             continue;
         }
         if let Some((_, numbers)) = labels.iter_mut().find(|(other, _)| near(*other, at)) {
-            *numbers += &format!(", {}", index + 1);
+            *numbers += &format!(", {number}");
         } else {
-            labels.push((at, (index + 1).to_string()));
+            labels.push((at, number.to_string()));
         }
     }
     Ok(labels)
 }
-
-#[cfg(test)]
-mod tests;

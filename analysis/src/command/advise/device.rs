@@ -105,8 +105,7 @@ pub fn run(arguments: &Arguments, answer: &JsonOption) -> Result<CommandStatus, 
             |name: &str, &(rate, felt): &(f64, f64)| vec![name.into(), rate.into(), felt.into()];
         let rows =
             curves.iter().flat_map(|(name, curve)| curve.iter().map(move |it| row(name, it)));
-        let data =
-            Data::new(&["wall", "rate (Hz)", "felt stiffness (N m/rad)"], rows.collect::<Vec<_>>());
+        let data = Data::new("wall,rate (Hz),felt stiffness (N m/rad)", rows.collect::<Vec<_>>());
         match has_extension(output, "csv") {
             true => data.write(output)?,
             false => chart::stiffest::stiffest(&title, &curves, None, Some(report.rate))?

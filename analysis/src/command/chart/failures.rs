@@ -25,13 +25,7 @@ pub fn draw() -> Result<Chart, CommandError> {
             })
         })
     });
-    let header = &[
-        "device",
-        "method",
-        "steps a tick",
-        "apparent limit (N m/rad)",
-        "limit (N m/rad)",
-        "certified (N m/rad)",
-    ];
+    let header = "device,method,steps a tick,apparent limit (N m/rad),limit (N m/rad),\
+                  certified (N m/rad)";
     Ok(Chart { picture, data: Data::new(header, rows) })
 }

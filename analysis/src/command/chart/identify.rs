@@ -41,7 +41,6 @@ pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
             vec![hertz.into(), response.admittance.re.into(), response.admittance.im.into()]
         })
         .collect();
-    let header =
-        &["frequency (Hz)", "real part of J (rad/(N m s))", "imaginary part of J (rad/(N m s))"];
+    let header = "frequency (Hz),real part of J (rad/(N m s)),imaginary part of J (rad/(N m s))";
     Ok(Chart { picture, data: Data::new(header, rows) })
 }

@@ -9,7 +9,7 @@ use crate::chart::{self, Chart, Data};
 use crate::command::shared_arguments::SceneArgument;
 use crate::command::status::CommandError;
 use crate::command::value_parsers::{number, positive_range};
-use crate::latency_limits::LatencyLimits;
+use crate::latency_limits::{LatencyLimits, LatencyPoint};
 use crate::progress;
 use crate::quantity::{shortened, significant};
 
@@ -55,26 +55,15 @@ pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
     let picture = chart::latency::latency(&title, &loops)?;
     let rows = loops.into_iter().flat_map(|limits| {
         limits.points.into_iter().map(move |point| {
-            vec![
-                limits.bandwidth.into(),
-                point.rate.into(),
-                point.at_phase.into(),
-                point.latched.into(),
-                point.whole_samples.into(),
-                point.folklore.into(),
-                f64::from(u8::from(point.folklore_is_unsafe())).into(),
-            ]
+            let oscillates = f64::from(u8::from(point.folklore_is_unsafe()));
+            let LatencyPoint { rate, at_phase, latched, whole_samples, folklore, .. } = point;
+            let known = [Some(limits.bandwidth), Some(rate), at_phase, Some(latched)];
+            let assumed = [whole_samples, Some(folklore), Some(oscillates)];
+            known.into_iter().chain(assumed).map(Into::into).collect()
         })
     });
-    let header = &[
-        "current loop (Hz)",
-        "servo rate (Hz)",
-        "at a phase (N m/rad)",
-        "latched (N m/rad)",
-        "whole samples (N m/rad)",
-        "b/(T/2 + tau) (N m/rad)",
-        "oscillates (1)",
-    ];
+    let header = "current loop (Hz),servo rate (Hz),at a phase (N m/rad),latched (N m/rad),\
+                  whole samples (N m/rad),b/(T/2 + tau) (N m/rad),oscillates (1)";
     Ok(Chart { picture, data: Data::new(header, rows) })
 }
 

@@ -91,8 +91,7 @@ pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
             vec![delay.into(), rate.into(), stiffness.into(), ripple.into()]
         })
     });
-    let header =
-        &["delay (samples)", "sample rate (Hz)", "largest stiffness (N m/rad)", "ripple (N m)"];
+    let header = "delay (samples),sample rate (Hz),largest stiffness (N m/rad),ripple (N m)";
     Ok(Chart { picture, data: Data::new(header, rows) })
 }
 

@@ -45,19 +45,18 @@ pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
     let file = arguments.scene.load()?;
     let side = (arguments.points as f64).sqrt().ceil() as usize;
     let ranges = (arguments.stiffness.clone(), arguments.damping.clone());
-    let (map, overlay, header) = match file.scene.environment.profile() {
+    let (map, overlay) = match file.scene.environment.profile() {
         Some(_) => of_profile(&file, ranges, side)?,
         None => of_walls(&file, ranges, side)?,
     };
     let picture = chart::map::map(&map, &overlay)?;
     let row = |(x, y, region): (f64, f64, Region)| vec![x.into(), y.into(), region.as_str().into()];
+    let header = format!("{},region", overlay.labels.join(","));
     Ok(Chart { picture, data: Data::new(header, map.cells().map(row)) })
 }
 
 /// The ranges of both axes, if given.
 type Ranges = (Option<Range<f64>>, Option<Range<f64>>);
-/// A map with the names of its columns.
-type Drawn = (Map, Overlay, &'static [&'static str; 3]);
 
 /// The map of a scene file's torque profile: a column for each number of repetitions, and at most `side`
 /// columns.
@@ -65,8 +64,7 @@ fn of_profile(
     file: &SceneFile,
     (counts, torques): Ranges,
     side: usize,
-) -> Result<Drawn, CommandError> {
-    const HEADER: &[&str; 3] = &["repetitions in a turn", "torque (N m)", "region"];
+) -> Result<(Map, Overlay), CommandError> {
     let no_detents = || CommandError::NoDetents { scene: file.name.clone() };
     if !Plane::choice(&file.scene).contains(&Parameter::Count) {
         return Err(no_detents());
@@ -85,12 +83,12 @@ fn of_profile(
     bar.finish_and_clear();
     let overlay = Overlay {
         title: title(file, "torque profiles"),
-        labels: [HEADER[0], HEADER[1]],
+        labels: ["repetitions in a turn", "torque (N m)"],
         says_stability: plane.says_stability(),
         border: None,
         scene: plane.own().into(),
     };
-    Ok((map, overlay, HEADER))
+    Ok((map, overlay))
 }
 
 /// The map of a scene file's walls, of `side` times `side` cells.
@@ -98,8 +96,7 @@ fn of_walls(
     file: &SceneFile,
     (stiffness, damping): Ranges,
     side: usize,
-) -> Result<Drawn, CommandError> {
-    const HEADER: &[&str; 3] = &["stiffness (N m/rad)", "damping (N m s/rad)", "region"];
+) -> Result<(Map, Overlay), CommandError> {
     let family = Family::of(file)?;
     let usual = family.usual_ranges();
     let (stiffness, damping) = (stiffness.unwrap_or(usual.0), damping.unwrap_or(usual.1));
@@ -113,12 +110,12 @@ fn of_walls(
     let delay = wall.map_or(0, |wall| wall.delay);
     let overlay = Overlay {
         title: title(file, &format!("walls of delay {delay}")),
-        labels: [HEADER[0], HEADER[1]],
+        labels: ["stiffness (N m/rad)", "damping (N m s/rad)"],
         says_stability: true,
         border: closed_form_border(&family, &map),
         scene: wall.map_or((0.0, 0.0), |wall| (wall.stiffness, wall.damping())),
     };
-    Ok((map, overlay, HEADER))
+    Ok((map, overlay))
 }
 
 fn title(file: &SceneFile, what: &str) -> String {

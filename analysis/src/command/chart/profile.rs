@@ -35,7 +35,6 @@ pub fn of_file(file: &SceneFile) -> Result<Chart, CommandError> {
         let handle = angle + compliance * torque;
         [angle, torque, potential, handle].map(Into::into).to_vec()
     });
-    const COLUMNS: [&str; 4] =
-        ["angle (rad)", "torque (N m)", "potential (J)", "angle at the handle (rad)"];
-    Ok(Chart { picture, data: Data::new(&COLUMNS, rows) })
+    let header = "angle (rad),torque (N m),potential (J),angle at the handle (rad)";
+    Ok(Chart { picture, data: Data::new(header, rows) })
 }

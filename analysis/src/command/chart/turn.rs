@@ -55,6 +55,6 @@ fn of_scene(
     let FeltTurn { time, angle, setpoint, torque, .. } = turn;
     let rows = (0..time.len())
         .map(move |i| [time[i], angle[i], setpoint[i], torque[i]].map(Into::into).to_vec());
-    let header = &["time (s)", "angle (rad)", "hand (rad)", "torque (N m)"];
-    Ok(Chart { picture, data: Data::new(header, rows) })
+    let data = Data::new("time (s),angle (rad),hand (rad),torque (N m)", rows);
+    Ok(Chart { picture, data })
 }

@@ -273,6 +273,6 @@ fn chart(file: &SceneFile, found: &Found) -> Result<Chart, CommandError> {
     let row =
         |point: Point| vec![point.structure.into(), point.rate.into(), point.felt_stiffness.into()];
     let rows: Vec<_> = found.walls.iter().map(point).map(row).collect();
-    let header = &["structure", "rate (Hz)", "felt stiffness (N m/rad)"];
-    Ok(Chart { picture, data: Data::new(header, rows) })
+    let data = Data::new("structure,rate (Hz),felt stiffness (N m/rad)", rows);
+    Ok(Chart { picture, data })
 }

@@ -2,13 +2,10 @@ use std::collections::BTreeMap;
 
 use haptic_servo::certificate::assess;
 use haptic_servo::environment::{Canceller, Environment, Parts, Rational, Wall};
-use haptic_servo::scene::{Coupling, Device, Latency, Scene, TimeRange};
+use haptic_servo::scene::{Coupling, Latency, Scene, TimeRange};
 
 use super::*;
-
-fn scene(environment: Environment, coupling: Coupling) -> Scene {
-    Scene { coupling, ..Scene::of(Device::damped(2.2e-5, 0.022), 0.001, environment) }
-}
+use crate::fixture::{STANDARD, on_paddle};
 
 fn rational(numerator: &[f64], denominator: &[f64], delay: usize) -> Rational {
     Rational { delay, ..Rational::of(numerator, denominator).unwrap() }
@@ -20,20 +17,16 @@ fn judged(scene: &Scene) -> NyquistScene {
 
 #[test]
 fn what_is_drawn_of_a_rigid_coupling_crosses_the_line_where_the_scene_is_rejected() {
-    let rejected = scene(Wall::damped(20.0, 0.01, 1).alone(), Coupling::Rigid);
+    let rejected = on_paddle(Wall::damped(20.0, 0.01, 1).alone(), Coupling::Rigid);
     assert!(assess(&rejected).outcome.is_err());
     let found = judged(&rejected);
-    let least = |role| {
-        let curve = found.curves.iter().find(|curve| curve.role == role).unwrap();
-        curve.values().map(|value| value.0).fold(f64::INFINITY, f64::min)
-    };
-    // The environment alone, which was drawn before, keeps clear.
-    let line = -found.limit.unwrap();
-    assert!(least(Role::Alone) > line && least(Role::Judged) < line);
+    let curve = |role| found.curves.iter().find(|curve| curve.role == role).unwrap();
+    let (alone, line) = (curve(Role::Alone), -found.limit.unwrap());
+    // The environment alone keeps clear.
+    assert!(alone.least_real() > line && curve(Role::Judged).least_real() < line);
     assert!(found.clearance() < 0.0 && found.gain_margin().unwrap() < 1.0);
-    let named = [("rigid".to_owned(), rejected)];
-    let picture = nyquist("rigid", &named, &Window::default()).unwrap();
-    assert!(picture.svg.contains("environment without its coupling, not judged"));
+    let words = words::curve("", &found, alone, true).concat();
+    assert!(words.contains("environment without its coupling, not judged"), "{words}");
 }
 
 /// A scene of any kind, on both sides of its limit.
@@ -64,10 +57,10 @@ fn random(random: &mut fastrand::Rng) -> Scene {
     };
     let coupling = match random.u8(0..4) {
         0 => Coupling::Rigid,
-        1 => Coupling::Spring { stiffness: 44.0 },
+        1 => STANDARD,
         _ => Coupling::Spring { stiffness: between(random, 10.0, 90.0) },
     };
-    let mut scene = scene(environment, coupling);
+    let mut scene = on_paddle(environment, coupling);
     if random.u8(0..4) == 0 {
         scene.timing.worst_period = Some(between(random, 0.001, 0.003));
     }
@@ -149,31 +142,21 @@ fn the_drawn_side_of_the_line_is_the_verdict() {
 
 #[test]
 fn margins_are_what_it_takes_to_touch_the_line() {
-    const STANDARD: Coupling = Coupling::Spring { stiffness: 44.0 };
     // alpha = K T / 2 + B = 0.021
-    let found = judged(&scene(Wall::damped(22.0, 0.01, 1).alone(), STANDARD));
+    let found = judged(&on_paddle(Wall::damped(22.0, 0.01, 1).alone(), STANDARD));
     assert!((found.gain_margin().unwrap() - 22.0 / 21.0).abs() < 1e-9);
     // Its curve goes to infinity, where any lag turns it across the line.
     assert!(found.phase_margin(&found.curves[0]).is_none());
     // A circle around the origin of radius B: never as far as the line.
-    let damper = judged(&scene(Wall::damped(0.0, 0.01, 1).alone(), STANDARD));
+    let damper = judged(&on_paddle(Wall::damped(0.0, 0.01, 1).alone(), STANDARD));
     assert!(damper.phase_margin(&damper.curves[0]).is_none());
     // A curve whose delayed value is at -B only where it is far below: turned by the angle found, its least
     // real part is on the line.
     let environment = rational(&[27.0, -27.0], &[1.0, -0.5], 1);
-    let found = judged(&scene(Environment::Rational(environment), STANDARD));
+    let found = judged(&on_paddle(Environment::Rational(environment), STANDARD));
     let (turn, _, _) = found.phase_margin(&found.curves[0]).unwrap();
     let (sin, cos) = turn.sin_cos();
     let turned = found.curves[0].values().map(|(re, im)| re * cos + im * sin);
     let least = turned.fold(f64::INFINITY, f64::min);
     assert!((least + 0.022).abs() < 1e-5, "{least} {turn}");
-}
-
-#[test]
-fn ranges_of_the_axes_are_those_that_are_asked_for() {
-    let named = [("w".to_owned(), scene(Wall::damped(9.0, 0.0, 1).alone(), Coupling::Rigid))];
-    let usual = nyquist("w", &named, &Window::default()).unwrap();
-    let wanted = Window { x: Some(-0.03..0.0), y: Some(0.25..0.75) };
-    let asked = nyquist("w", &named, &wanted).unwrap();
-    assert!(asked.svg.contains("\n0.6\n") && !usual.svg.contains("\n0.6\n"));
 }
