@@ -13,13 +13,12 @@ use crate::command::file_scene::{hand_trajectory, scene_file};
 use crate::command::shared_arguments::JsonOption;
 use crate::command::status::{CommandError, CommandStatus};
 use crate::command::value_parsers::positive;
-use crate::hand::HandTrajectory;
 use crate::limits::at_period;
 use crate::program::Program;
-use crate::studies::bench::CORE_CLOCK;
 use crate::studies::number_format::{
     Advice, FormatProblem, HALF_A_TURN, Motion, Requirements, cost,
 };
+use crate::studies::tradeoff::servo::Case;
 use crate::studies::tradeoff::{self, Tradeoff, ticks};
 
 #[derive(Debug, Args)]
@@ -57,16 +56,6 @@ pub struct FormatArguments {
 
 /// Largest rate in Hz: a core of 170 MHz then has 850 cycles per tick.
 const LARGEST_RATE: f64 = 200e3;
-/// Duration in s of the motion in which errors are measured.
-const SECONDS: f64 = 5.0;
-
-/// The scene for which a format is sought.
-struct FormatQuery {
-    name: String,
-    problem: FormatProblem,
-    trajectory: HandTrajectory,
-}
-
 /// Finds the cheapest format. The verdict is negative if no format, or not even the encoder, satisfies the
 /// requirements.
 pub fn run(
@@ -78,13 +67,12 @@ pub fn run(
     let scene = &query.problem.scene;
     // A scene that is rejected at this rate needs no format.
     scene.certify().map_err(|rejection| CommandError::Refused(Box::new(rejection)))?;
-    let motion = Motion::new(&query.problem, query.trajectory.clone(), SECONDS)?;
+    let motion = query.motion()?;
     let requirements = Requirements {
         hum: arguments.hum,
         error: arguments.error,
         share: arguments.share,
         rate: arguments.rate,
-        clock: CORE_CLOCK,
     };
     let look = if arguments.measure { measured } else { kept };
     let advice = look(&motion, &requirements)?;
@@ -106,7 +94,7 @@ pub fn run(
 }
 
 /// The scene at the rate, with its sensor, its motor and a hand's trajectory.
-fn query(scene: &str, arguments: &FormatArguments) -> Result<FormatQuery, CommandError> {
+fn query(scene: &str, arguments: &FormatArguments) -> Result<Case, CommandError> {
     let at_rate = |scene: &Scene| at_period(scene, 1.0 / arguments.rate);
     let FormatArguments { counts_per_rev: counts, range, friction, .. } = *arguments;
     Ok(match Program::find(scene) {
@@ -115,7 +103,7 @@ fn query(scene: &str, arguments: &FormatArguments) -> Result<FormatQuery, Comman
             let counter = CounterWidth::Bits32;
             let transducers = Transducers { counts_per_turn, counter, ..program.transducers };
             let (scene, steps) = (at_rate(&program.scene), Resolution::of(&transducers, friction));
-            FormatQuery {
+            Case {
                 name: program.name.to_owned(),
                 problem: FormatProblem { scene, transducers, steps, range },
                 trajectory: (program.trajectory)(),
@@ -131,7 +119,7 @@ fn query(scene: &str, arguments: &FormatArguments) -> Result<FormatQuery, Comman
                 ..said
             };
             let scene = at_rate(&file.scene);
-            FormatQuery {
+            Case {
                 problem: FormatProblem { scene, transducers, steps, range },
                 trajectory: hand_trajectory(&file),
                 name: file.name,

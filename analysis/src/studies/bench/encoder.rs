@@ -1,13 +1,13 @@
 //! What a magnetic encoder costs: of a verdict, and of a tick on its board.
 
-use std::hint::black_box;
+use std::convert::Infallible;
 
-use haptic_servo::certificate::{assess, is_static_at_port};
+use haptic_servo::certificate::is_static_at_port;
 use haptic_servo::environment::Wall;
 use haptic_servo::scene::{Coupling, EncoderReading, Scene, TimeRange, Timing};
 
 use super::figure::{Pair, seconds};
-use super::on_target;
+use super::{judge, on_target};
 use crate::file::{FileError, Format, SceneFile, parse};
 use crate::program::damper_wall;
 
@@ -61,8 +61,7 @@ pub fn verdicts(rounds: usize) -> Pair {
         })
         .collect();
     let time = |scenes: &[Scene]| {
-        let judge = || scenes.iter().for_each(|scene| _ = black_box(assess(black_box(scene))));
-        Ok::<_, std::convert::Infallible>(seconds(judge) * 1e6 / scenes.len() as f64)
+        Ok::<_, Infallible>(seconds(|| judge(scenes)) * 1e6 / scenes.len() as f64)
     };
     let Ok(pair) = Pair::in_turns(rounds, || time(&read), || time(&plain));
     pair

@@ -136,12 +136,6 @@ mod tests {
 
     use super::*;
 
-    #[test]
-    fn the_median_is_in_the_middle() {
-        assert_eq!(median(vec![3.0, 1.0, 2.0]), 2.0);
-        assert_eq!(median(Vec::new()), 0.0);
-    }
-
     /// One after the other, and without the round that fills caches.
     #[test]
     fn a_pair_is_measured_in_turns() {

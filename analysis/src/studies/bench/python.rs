@@ -1,13 +1,12 @@
 //! Verdicts and steps by packages of Python, which one process of Python runs.
 
-use std::hint::black_box;
-
 use haptic_servo::certificate::assess;
 use haptic_servo::environment::Environment;
 use haptic_servo::scene::Scene;
 use serde_json::json;
 
 use super::figure::{Pair, seconds};
+use super::judge;
 use super::peer::Peer;
 use super::steps::{STEPS, numbers, steps_beside};
 use crate::studies::error::StudyError;
@@ -69,11 +68,10 @@ impl PythonPeers {
         let wrong = count(&|theirs, ours| !theirs.is_nan() && (theirs == 1.0) != ours);
         let each = 1e6 / scenes.len() as f64;
         let timed = format!("seconds {name}");
-        let judge = || scenes.iter().for_each(|scene| _ = black_box(assess(black_box(scene))));
         // The second run counts, so that the caches are filled.
         let judged = || {
-            judge();
-            Ok::<_, StudyError>(seconds(judge) * each)
+            judge(scenes);
+            Ok::<_, StudyError>(seconds(|| judge(scenes)) * each)
         };
         let pair = Pair::in_turns(rounds, judged, || Ok(peer.number(&timed)? * each))?;
         let of = values.len();

@@ -5,7 +5,6 @@ use haptic_servo::scene::{Device, Scene};
 use haptic_servo::servo::Transducers;
 
 use super::loaded::LoadedDevice;
-use super::method_result::{MOVES, MethodResult};
 use super::motion::{Motion, Outcome};
 use crate::controller::controller;
 use crate::lockstep::run;
@@ -48,12 +47,5 @@ impl LoopRun {
         let mut device = LoadedDevice::new(&self.experiment, &self.transducers)?;
         run(&mut device, servo.as_mut(), *samples);
         Ok(Some(Motion::of(&device.positions, *samples)))
-    }
-}
-
-impl MethodResult {
-    /// The verdict of a simulation.
-    pub fn simulated(method: &str, loop_run: &LoopRun) -> Result<Self, StudyError> {
-        Ok(Self::of_motion(method, &loop_run.simulated()?, MOVES))
     }
 }

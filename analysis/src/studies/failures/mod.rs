@@ -40,10 +40,3 @@ cases! {
     "varying-hand", "a resonance behind a current loop, just past its limit", varying_hand::varying_hand;
     "ratchet", "24 teeth that push on by 3 N m in the mean", ratchet::ratchet;
 }
-
-impl Case {
-    /// The case of that name.
-    pub fn find(name: &str) -> Option<&'static Self> {
-        ALL.iter().find(|case| case.name == name)
-    }
-}

@@ -7,9 +7,6 @@ use haptic_servo::scene::Device;
 use nalgebra::Complex;
 
 use super::setting::*;
-use crate::response::Response;
-use crate::simulation::SimulationError;
-use crate::simulation::closed_loop::transfers;
 
 /// Continuous time: a mass, a damper and any spring come to rest.
 pub fn continuous_time() -> Result<CaseReport, StudyError> {
@@ -72,11 +69,6 @@ fn colgate_schenkel(scene: &Scene) -> Result<f64, StudyError> {
     };
     let angles = (1..=POINTS).map(|point| PI * f64::from(point) / f64::from(POINTS));
     Ok(angles.map(at).fold(f64::NEG_INFINITY, f64::max))
-}
-
-/// From the sampled position to the torque.
-fn controller(scene: &Scene) -> Result<Response, StudyError> {
-    Ok(Response::new(transfers(scene).map_err(SimulationError::from)?.controller))
 }
 
 /// The rule `K < (b + B) / (T/2 + t_d)` at `B = b`.

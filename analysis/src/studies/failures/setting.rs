@@ -14,7 +14,9 @@ pub use super::motion::{Motion, Outcome};
 pub use super::report::CaseReport;
 use crate::device;
 use crate::limits::{Limit, largest_stiffness, standard_coupling};
-use crate::simulation::Experiment;
+use crate::response::Response;
+use crate::simulation::closed_loop::transfers;
+use crate::simulation::{Experiment, SimulationError};
 pub use crate::studies::error::StudyError;
 
 /// Period of all cases in s.
@@ -78,6 +80,11 @@ pub fn encoder_friction(scene: &Scene, transducers: &Transducers) -> f64 {
     let step = TAU / transducers.counts_per_turn;
     let Some(wall) = scene.environment.wall() else { return 0.0 };
     (0.5 * wall.stiffness + wall.damping() / scene.timing.period) * step
+}
+
+/// The controller of a scene, from the sampled position to the torque.
+pub fn controller(scene: &Scene) -> Result<Response, StudyError> {
+    Ok(Response::new(transfers(scene).map_err(SimulationError::from)?.controller))
 }
 
 /// A run of a scene on its rigid device, with the friction that its board needs for rest.

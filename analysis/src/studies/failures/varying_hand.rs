@@ -21,8 +21,6 @@ use super::setting::*;
 use crate::chain::Chain;
 use crate::line_search::minimizing_angle;
 use crate::response::Response;
-use crate::simulation::SimulationError;
-use crate::simulation::closed_loop::transfers;
 use crate::stability::{eigenvalues, radius};
 use crate::worst_hand::{needed, search};
 
@@ -101,7 +99,7 @@ impl VaryingHand {
     /// The worst hand for a scene behind an amplifier, at the angle with the largest shortage of its
     /// certificate.
     pub fn against(scene: &Scene) -> Result<Self, StudyError> {
-        let controller = Response::new(transfers(scene).map_err(SimulationError::from)?.controller);
+        let controller = controller(scene)?;
         let (period, damping) = (scene.timing.period, scene.device.damping);
         let lag = scene.latency.actuator_lag.middle() / period;
         let lags = [Interval::exact(lag), Interval::ZERO];
@@ -140,8 +138,7 @@ impl VaryingHand {
 
     /// Over a period: position, velocity and amplifier, the two of each way, the controller's.
     fn monodromy(&self, scene: &Scene) -> Result<DMatrix<f64>, StudyError> {
-        let transfer = transfers(scene).map_err(SimulationError::from)?.controller;
-        let filter = Response::new(transfer).filter().expect("a low degree");
+        let filter = controller(scene)?.filter().expect("a low degree");
         let (numerator, denominator) = (filter.numerator(), filter.denominator());
         let order = denominator.len() - 1;
         let device = &scene.device;

@@ -7,6 +7,7 @@ use haptic_servo::certificate::Resolution;
 use haptic_servo::number::Format;
 use haptic_servo::torque::LimitReason;
 
+use super::method_result::MOVES;
 use super::setting::*;
 use crate::simulation::SimulationError;
 use crate::simulation::unquantized_servo::UnquantizedServo;
@@ -28,7 +29,8 @@ pub fn zigzag() -> Result<CaseReport, StudyError> {
     let mut rests = loop_run("in no hand", &scene, PADDLES, Outcome::Converges).pushed(1.0, 2000);
     rests.experiment.encoder_step = Some(TAU / PADDLES.counts_per_turn);
     rests.experiment.friction = ALMOST * needed;
-    let methods = vec![MethodResult::simulated("simulation in no hand", &rests)?];
+    let moves = rests.simulated()?;
+    let methods = vec![MethodResult::of_motion("simulation in no hand", &moves, MOVES)];
     let gained = gained(&scene, ALMOST * needed)?;
     let reason = "a hand that goes over one edge and back gets {} J out each time";
     let truth = MethodResult::new("zigzag", MethodVerdict::of(gained <= 0.0), gained, reason);

@@ -6,6 +6,7 @@ use serde::{Serialize, Serializer};
 
 use super::{Losses, Motion};
 use crate::quantity::significant;
+use crate::studies::bench::CORE_CLOCK;
 use crate::studies::error::StudyError;
 use crate::verdict::AtRest;
 
@@ -18,8 +19,6 @@ pub struct Requirements {
     /// Largest fraction of a core's time for a tick.
     pub share: f64,
     pub rate: f64,
-    /// Instructions per second of a core.
-    pub clock: f64,
 }
 
 /// A format with its cost and its errors.
@@ -120,7 +119,7 @@ fn candidate(
     rest: Option<QuantizationBound>,
     requirements: &Requirements,
 ) -> Candidate {
-    let share = instructions * requirements.rate / requirements.clock;
+    let share = instructions * requirements.rate / CORE_CLOCK;
     let mut rejected = Vec::new();
     let mut beyond = |what: &str, value: f64, bound: f64, unit: &str| {
         if value > bound {

@@ -12,28 +12,28 @@ impl FormatProblem {
     pub fn rest(&self, arithmetic: Arithmetic) -> Option<QuantizationBound> {
         // In the units of the servo, in which it rounds.
         let units = self.units(arithmetic);
+        let scaled = |torque: Option<f64>| torque.map(|torque| torque / units.torque);
         let Resolution { encoder, full_scale, friction, current, crossing } = self.steps;
         let steps = Resolution {
             encoder: encoder.map(|step| step / units.angle),
-            full_scale: full_scale.map(|torque| torque / units.torque),
-            friction: friction.map(|torque| torque / units.torque),
-            current: current.map(|torque| torque / units.torque),
-            crossing: crossing.map(|torque| torque / units.torque),
+            full_scale: scaled(full_scale),
+            friction: scaled(friction),
+            current: scaled(current),
+            crossing: scaled(crossing),
         };
         let scene = units.scene(&self.scene);
-        let QuantizationBound { encoder, numbers, converter, mean, motor, in_any_motion, .. } =
-            QuantizationBound::of(&scene, arithmetic.format(), &steps)?;
+        let rest = QuantizationBound::of(&scene, arithmetic.format(), &steps)?;
         let in_newton_metres = |torque: f64| torque * units.torque;
         Some(QuantizationBound {
-            encoder: encoder.map(in_newton_metres),
-            numbers: in_newton_metres(numbers),
-            converter: converter.map(in_newton_metres),
+            encoder: rest.encoder.map(in_newton_metres),
+            numbers: in_newton_metres(rest.numbers),
+            converter: rest.converter.map(in_newton_metres),
+            mean: in_newton_metres(rest.mean),
+            motor: rest.motor.map(in_newton_metres),
             current,
             crossing,
             friction,
-            mean: in_newton_metres(mean),
-            motor: motor.map(in_newton_metres),
-            in_any_motion,
+            ..rest
         })
     }
 }

@@ -50,9 +50,7 @@ pub fn at_rest(
     let mut largest = LimitCycle { torque: 0.0, angle: f64::INFINITY };
     for start in STARTS {
         let servo = problem.servo(arithmetic)?;
-        let motion = Motion { position: start, velocity: 0.0 };
-        let state = device.at(motion);
-        let mut settling = Settling { device: &device, servo, encoder, push, state };
+        let mut settling = Settling::from(&device, start, servo, encoder, push);
         let left = settling.settle(ticks(window, scene.timing.period))?;
         largest = LimitCycle {
             torque: largest.torque.max(left.torque),
@@ -69,9 +67,7 @@ fn window(problem: &FormatProblem, device: &HeldDevice, push: f64) -> Result<f64
         // Four windows together, so that a slow oscillation shows its whole span.
         let ticks = ticks(4.0 * window, problem.scene.timing.period);
         let servo = problem.servo(Arithmetic::F64)?;
-        let motion = Motion { position: STARTS[0], velocity: 0.0 };
-        let state = device.at(motion);
-        let mut settling = Settling { device, servo, encoder: None, push, state };
+        let mut settling = Settling::from(device, STARTS[0], servo, None, push);
         let (first, second) = (settling.window(ticks)?, settling.window(ticks)?);
         if second.torque <= first.torque / 16.0 {
             return Ok(window);
@@ -105,7 +101,19 @@ struct Settling<'a> {
     state: DeviceState,
 }
 
-impl Settling<'_> {
+impl<'a> Settling<'a> {
+    /// At rest at a position in rad.
+    fn from(
+        device: &'a HeldDevice,
+        position: f64,
+        servo: FormatServo,
+        encoder: Option<SimulatedEncoder>,
+        push: f64,
+    ) -> Self {
+        let state = device.at(Motion { position, velocity: 0.0 });
+        Self { device, servo, encoder, push, state }
+    }
+
     /// The limit cycle in a window of `ticks` ticks, after it has stopped shrinking.
     fn settle(&mut self, ticks: usize) -> Result<LimitCycle, StudyError> {
         let mut last = self.window(ticks)?;

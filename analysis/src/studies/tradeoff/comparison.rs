@@ -4,7 +4,7 @@ use crate::table::Column;
 
 /// A column of a table for an axis of a chart.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Axis {
+pub(crate) struct Axis {
     /// The name of its column in the file.
     pub name: &'static str,
     /// Name and unit on the axis.
@@ -33,14 +33,11 @@ impl Axis {
     }
 }
 
-/// A comparison and its columns.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Comparison {
+pub(crate) struct Comparison {
     /// Name of its files, without the extension.
     pub name: &'static str,
-    /// Title of its chart.
     pub title: &'static str,
-    /// The cost of a method.
     pub cost: Axis,
     /// The errors, with one panel each.
     pub errors: &'static [Axis],

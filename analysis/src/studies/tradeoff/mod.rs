@@ -8,11 +8,11 @@ pub mod certificate;
 mod comparison;
 pub mod servo;
 pub mod sine;
-pub mod ticks;
+pub(crate) mod ticks;
 
 use std::io::{Read, Write};
 
-pub use comparison::{Axis, Comparison};
+pub(crate) use comparison::{Axis, Comparison};
 
 use crate::emulator::Client;
 use crate::progress;
@@ -32,7 +32,7 @@ const NAME: Column = Column { names: &["name"], bound: "a name" };
 
 /// A method with its figures.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Method {
+pub(crate) struct Method {
     /// Its case: only methods of one case are compared.
     pub case: String,
     /// Its family: drawn with the same mark, joined by a line in the order of the table.
@@ -45,13 +45,16 @@ pub struct Method {
 }
 
 impl Method {
-    /// A method that has all figures.
-    pub fn new(case: &str, family: &str, name: impl Into<String>, values: &[f64]) -> Self {
-        let values = values.iter().copied().map(Some).collect();
-        Self { case: case.to_owned(), family: family.to_owned(), name: name.into(), values }
+    fn new(
+        case: &str,
+        family: &str,
+        name: &str,
+        values: impl IntoIterator<Item = impl Into<Option<f64>>>,
+    ) -> Self {
+        let [case, family, name] = [case, family, name].map(str::to_owned);
+        Self { case, family, name, values: values.into_iter().map(Into::into).collect() }
     }
 
-    /// Its cost.
     pub fn cost(&self) -> Option<f64> {
         self.values[0]
     }
@@ -62,12 +65,9 @@ impl Method {
     }
 }
 
-/// A table of measured methods.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Tradeoff {
-    /// The comparison.
+pub(crate) struct Tradeoff {
     pub comparison: &'static Comparison,
-    /// The methods.
     pub methods: Vec<Method>,
 }
 
@@ -82,7 +82,6 @@ impl Tradeoff {
         distinct(self.methods.iter().map(|method| &*method.family))
     }
 
-    /// The methods of a case.
     pub fn of<'t, 'c>(&'t self, case: &'c str) -> impl Iterator<Item = &'t Method> + use<'t, 'c> {
         self.methods.iter().filter(move |method| method.case == case)
     }
@@ -108,7 +107,6 @@ impl Tradeoff {
         front
     }
 
-    /// Reads a stored table.
     pub fn read<R: Read>(
         comparison: &'static Comparison,
         mut table: Table<R>,
@@ -130,18 +128,17 @@ impl Tradeoff {
         Ok(Self { comparison, methods })
     }
 
-    /// The kept table of a comparison.
     pub fn kept(comparison: &'static Comparison) -> Result<Self, TableError> {
         Self::read(comparison, Table::new(comparison.name, comparison.kept)?)
     }
 
-    /// Writes the table.
     pub fn write(&self, to: impl Write) -> std::io::Result<()> {
         let mut file = csv::Writer::from_writer(to);
         let words = [CASE, FAMILY, NAME].into_iter();
         file.write_record(words.chain(self.comparison.columns()).map(|column| column.names[0]))?;
         for method in &self.methods {
             let words = [&method.case, &method.family, &method.name].into_iter().cloned();
+            let written = |value| significant(value, DIGITS);
             let number = |value: &Option<f64>| value.map_or_else(String::new, written);
             file.write_record(words.chain(method.values.iter().map(number)))?;
         }
@@ -163,12 +160,12 @@ fn fastest(rounds: usize, works: &mut [impl FnMut()]) -> Vec<f64> {
 }
 
 /// An emulated board that computes the scenes that have a program, and sines.
-pub fn board() -> Result<Client, StudyError> {
+pub(crate) fn board() -> Result<Client, StudyError> {
     boot("building the trial of the formats", "bench_programs")
 }
 
 /// The same for any scene; its program takes longer to build.
-pub fn any_board() -> Result<Client, StudyError> {
+pub(crate) fn any_board() -> Result<Client, StudyError> {
     boot("building all types of scenes in all formats", "bench_all")
 }
 
@@ -178,10 +175,6 @@ fn boot(what: &str, program: &str) -> Result<Client, StudyError> {
     let elf = toolchain.build_harness(program)?;
     spinner.finish_and_clear();
     Ok(Client::boot(&elf)?)
-}
-
-fn written(value: f64) -> String {
-    significant(value, DIGITS)
 }
 
 /// Each once, in order of appearance.

@@ -14,8 +14,7 @@ use crate::program::{self, Program};
 use crate::studies::error::StudyError;
 use crate::studies::number_format::{Cost, FormatProblem, HALF_A_TURN, Losses, Motion, cost};
 
-/// The comparison.
-pub static COMPARISON: Comparison = Comparison {
+pub(crate) static COMPARISON: Comparison = Comparison {
     name: "servo",
     title: "Servo: number formats, a tick of each scene at 1 kHz on the emulated Cortex-M4",
     cost: Axis::new("instructions", "most instructions from count to code"),
@@ -40,7 +39,7 @@ const SECONDS: f64 = 5.0;
 #[derive(Clone, Debug)]
 pub struct Case {
     /// Its name.
-    pub name: &'static str,
+    pub name: String,
     /// The scene with its sensor and motor.
     pub problem: FormatProblem,
     /// The hand's trajectory.
@@ -54,13 +53,13 @@ impl Case {
         let (scene, range) = (program.scene, HALF_A_TURN);
         let steps = Resolution::of(&transducers, None);
         let problem = FormatProblem { scene, transducers, steps, range };
-        Self { name: program.name, problem, trajectory: (program.trajectory)() }
+        Self { name: program.name.to_owned(), problem, trajectory: (program.trajectory)() }
     }
 
     /// The same in another environment.
-    pub(super) fn with(mut self, name: &'static str, environment: Environment) -> Self {
+    pub(super) fn with(mut self, name: &str, environment: Environment) -> Self {
         self.problem.scene.environment = environment;
-        Self { name, ..self }
+        Self { name: name.to_owned(), ..self }
     }
 
     /// The motion of the device.
@@ -82,8 +81,7 @@ pub fn cases() -> Vec<Case> {
     cases
 }
 
-/// Measures all formats on all scenes.
-pub fn measure() -> Result<Tradeoff, StudyError> {
+pub(crate) fn measure() -> Result<Tradeoff, StudyError> {
     let mut board = super::board()?;
     let mut methods = Vec::new();
     for case in cases() {
@@ -105,8 +103,7 @@ fn row(
     let Cost { most, mean } = cost(board, motion, arithmetic)?;
     let [drawn @ .., torque, angle] = Losses::of(motion, arithmetic)?.figures();
     let values = [&[Some(most.into())], &drawn[..], &[Some(mean), torque, angle]].concat();
-    let method = Method::new(case.name, family(arithmetic), arithmetic.name(), &[]);
-    Ok(Method { values, ..method })
+    Ok(Method::new(&case.name, family(arithmetic), arithmetic.name(), values))
 }
 
 fn family(arithmetic: Arithmetic) -> &'static str {
@@ -133,7 +130,7 @@ mod tests {
             for arithmetic in Arithmetic::ALL {
                 let kept = methods.next().unwrap();
                 let names = (&*kept.case, &*kept.name);
-                assert_eq!(names, (case.name, arithmetic.name()));
+                assert_eq!(names, (&*case.name, arithmetic.name()));
                 let fresh = Losses::of(&motion, arithmetic).unwrap().figures();
                 let at = [1, 2, 3, 4, 6, 7].map(|column| kept.values[column]);
                 for (kept, fresh) in at.into_iter().zip(fresh) {

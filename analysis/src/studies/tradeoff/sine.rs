@@ -17,8 +17,7 @@ use super::{Axis, Comparison, Method, Tradeoff};
 use crate::studies::error::StudyError;
 use crate::studies::number_format::Cost;
 
-/// The comparison.
-pub static COMPARISON: Comparison = Comparison {
+pub(crate) static COMPARISON: Comparison = Comparison {
     name: "sine",
     title: "Sine of a sweep, and sine and cosine of a phase, on the emulated Cortex-M4",
     cost: Axis::new("instructions", "most instructions"),
@@ -41,8 +40,7 @@ pub fn error(sines: impl IntoIterator<Item = f64>) -> f64 {
     pairs.fold(0.0, |most, (turn, sine)| (sine - (TAU * f64::from(turn)).sin()).abs().max(most))
 }
 
-/// Measures all methods.
-pub fn measure() -> Result<Tradeoff, StudyError> {
+pub(crate) fn measure() -> Result<Tradeoff, StudyError> {
     let mut board = super::board()?;
     let inputs: Vec<_> = turns().into_iter().map(f32::to_bits).collect();
     let mut methods = Vec::new();
@@ -73,7 +71,7 @@ pub fn measure() -> Result<Tradeoff, StudyError> {
 
 fn row(case: &str, family: &str, name: &str, outputs: &[Output], error: f64) -> Method {
     let Cost { most, mean } = Cost::of(outputs);
-    Method::new(case, family, name, &[most.into(), error, mean])
+    Method::new(case, family, name, [most.into(), error, mean])
 }
 
 const POLYNOMIALS: &str = "polynomials of our own";

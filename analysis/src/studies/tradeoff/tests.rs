@@ -14,7 +14,7 @@ static COMPARISON: Comparison = Comparison {
 
 fn table(rows: &[(&str, f64, f64, f64)]) -> Tradeoff {
     let row = |&(name, time, error, open): &(&str, f64, f64, f64)| {
-        Method::new("a case", "a family", name, &[time, error, open, 1.0])
+        Method::new("a case", "a family", name, [time, error, open, 1.0])
     };
     Tradeoff { comparison: &COMPARISON, methods: rows.iter().map(row).collect() }
 }
@@ -39,21 +39,14 @@ fn the_front_holds_what_nothing_beats() {
     assert!(all.front("another case", 0).is_empty());
 }
 
-/// A table with its numbers as they are once it has been written and read again.
-fn rounded(mut all: Tradeoff) -> Tradeoff {
-    let values = all.methods.iter_mut().flat_map(|method| &mut method.values).flatten();
-    values.for_each(|value| *value = written(*value).parse().unwrap_or(*value));
-    all
-}
-
+/// A name with a comma, a number that is infinite, and a figure that the method does not have.
 #[test]
-fn a_table_is_read_as_it_was_written() {
-    let mut all = table(&[("one, with a comma", 1.234_567_89e-7, 0.0, f64::INFINITY)]);
-    all.methods[0].values[3] = None;
+fn a_table_is_written_as_it_was_read() {
+    let text = "case,family,name,time,error,open,steps\na,b,\"c, d\",1.23457e-7,inf,,0\n";
     let mut file = Vec::new();
-    all.write(&mut file).unwrap();
-    let table = Table::new("kept.csv", &*file).unwrap();
-    assert_eq!(Tradeoff::read(&COMPARISON, table).unwrap(), rounded(all));
+    let table = Table::new("kept.csv", text.as_bytes()).unwrap();
+    Tradeoff::read(&COMPARISON, table).unwrap().write(&mut file).unwrap();
+    assert_eq!(String::from_utf8(file).unwrap(), text);
 }
 
 #[test]

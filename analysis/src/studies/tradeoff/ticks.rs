@@ -18,7 +18,7 @@ use crate::studies::error::StudyError;
 use crate::studies::number_format::cost;
 
 /// The comparison: types of scenes are its cases, and it has no error to draw.
-pub static COMPARISON: Comparison = Comparison {
+pub(crate) static COMPARISON: Comparison = Comparison {
     name: "ticks",
     title: "Servo: number formats, a tick of each type of scene on the emulated Cortex-M4",
     cost: Axis::new("instructions", "most instructions from count to code"),
@@ -27,21 +27,18 @@ pub static COMPARISON: Comparison = Comparison {
     kept: include_bytes!("../../../pictures/tradeoff/ticks.csv"),
 };
 
-/// Measured delays.
 const DELAYS: [usize; 3] = [0, 1, MAX_DELAY];
-/// Measured degrees.
 const DEGREES: [usize; 4] = [1, 2, 4, MAX_DEGREE];
 
-/// Measures all types in all formats.
-pub fn measure() -> Result<Tradeoff, StudyError> {
+pub(crate) fn measure() -> Result<Tradeoff, StudyError> {
     let (mut board, cases) = (super::any_board()?, cases());
     let bar = progress::bar(cases.len() as u64, "types of scenes");
     let mut methods = Vec::new();
     for case in cases {
         let (motion, name) = (case.motion()?, type_of(&case.problem.scene.environment));
         for arithmetic in Arithmetic::ALL {
-            let most = cost(&mut board, &motion, arithmetic)?.most.into();
-            methods.push(Method::new(&name, "", arithmetic.name(), &[most]));
+            let most = f64::from(cost(&mut board, &motion, arithmetic)?.most);
+            methods.push(Method::new(&name, "", arithmetic.name(), [most]));
         }
         bar.inc(1);
     }
@@ -188,7 +185,7 @@ mod tests {
     fn both_tables_count_alike() {
         let (ticks, formats) = (kept(), Tradeoff::kept(&servo::COMPARISON).unwrap());
         for case in servo::cases() {
-            for (method, arithmetic) in formats.of(case.name).zip(Arithmetic::ALL) {
+            for (method, arithmetic) in formats.of(&case.name).zip(Arithmetic::ALL) {
                 let here = instructions(&ticks, &case.problem.scene.environment, arithmetic);
                 let off = (here / method.cost().unwrap() - 1.0).abs();
                 assert!(off < 0.05, "{} in {}: {here}, off by {off}", case.name, method.name);

@@ -17,8 +17,7 @@ use crate::studies::failures::method_result::MethodVerdict;
 use environments::{EACH, Environment, Kind, environment, reference_index};
 use index_methods::{Grid, IndexMethod, IndexResult};
 
-/// The comparison.
-pub static COMPARISON: Comparison = Comparison {
+pub(crate) static COMPARISON: Comparison = Comparison {
     name: "certificate",
     title: "Certificate: ways to the index alpha and the verdict, on 2500 environments of each kind",
     cost: Axis::new("microseconds", "time of a verdict (microseconds)"),
@@ -41,19 +40,15 @@ const ROUNDS: usize = 9;
 /// Widths of enclosures, relative to the index.
 const TOLERANCES: [f64; 5] = [1e-1, 1e-3, 1e-6, 1e-9, 1e-13];
 
-/// A method for the index, with its family and its name.
 #[derive(Clone, Debug)]
-pub struct Candidate {
-    /// Its family.
+pub(crate) struct Candidate {
     pub family: &'static str,
-    /// Its own name.
     pub name: String,
-    /// The method.
     pub method: IndexMethod,
 }
 
 /// All compared methods.
-pub fn candidates() -> Vec<Candidate> {
+fn candidates() -> Vec<Candidate> {
     let one = |family, method| vec![Candidate { family, name: family.to_owned(), method }];
     let enclosure = |&tolerance: &f64| Candidate {
         family: "enclosure",
@@ -76,8 +71,7 @@ pub fn candidates() -> Vec<Candidate> {
     all
 }
 
-/// Measures all methods on all environments.
-pub fn measure() -> Tradeoff {
+pub(crate) fn measure() -> Tradeoff {
     let all = candidates();
     let known = |kind| all.iter().filter(move |one| evaluated(&one.method, kind, 0).is_some());
     let steps = Kind::ALL.into_iter().map(|kind| known(kind).count()).sum::<usize>();
@@ -116,14 +110,12 @@ fn evaluated(method: &IndexMethod, kind: Kind, number: usize) -> Option<IndexRes
     method.evaluate(&environment, delta)
 }
 
-/// Errors of a method on many environments.
+/// Errors of a method on many environments: numbers of false positives, of false negatives and of undecided
+/// verdicts.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct MethodErrors {
-    /// False positives.
+pub(crate) struct MethodErrors {
     pub wrong_yes: usize,
-    /// False negatives.
     pub wrong_no: usize,
-    /// Undecided verdicts.
     pub open: usize,
     /// Relative errors of the index in order; infinite if an index exists and none was found. Empty for a
     /// method that does not compute an index.
@@ -131,7 +123,6 @@ pub struct MethodErrors {
 }
 
 impl MethodErrors {
-    /// Evaluates a method on environments of a kind.
     pub fn of(method: &IndexMethod, kind: Kind, numbers: std::ops::Range<usize>) -> Self {
         let one = |number: usize| Some((number, evaluated(method, kind, number)?));
         let answers: Vec<_> = numbers.into_par_iter().filter_map(one).collect();
@@ -159,7 +150,7 @@ impl MethodErrors {
 
     fn row(&self, kind: Kind, candidate: &Candidate, microseconds: f64) -> Method {
         let count = |value: usize| Some(value as f64);
-        let values = vec![
+        let values = [
             Some(microseconds),
             self.quantile(0.99),
             count(self.wrong_yes),
@@ -168,10 +159,7 @@ impl MethodErrors {
             self.quantile(0.5),
             self.quantile(1.0),
         ];
-        Method {
-            values,
-            ..Method::new(kind.as_str(), candidate.family, candidate.name.clone(), &[])
-        }
+        Method::new(kind.as_str(), candidate.family, &candidate.name, values)
     }
 }
 

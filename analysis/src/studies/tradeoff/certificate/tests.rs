@@ -70,25 +70,3 @@ fn a_proof_is_never_wrong_and_grids_and_roots_are() {
         }
     }
 }
-
-/// A wall one sample late by every way: `alpha = K T/2 + B` (equation 27).
-#[test]
-fn every_way_finds_the_index_of_a_wall() {
-    let wall = |number: &usize| {
-        let drawn = environment(Kind::Walls, *number);
-        drawn.delay == 1 && drawn.wall.is_some_and(|(_, damping)| damping > 0.0)
-    };
-    let number = (0..EACH).find(wall).unwrap();
-    let (stiffness, damping) = environment(Kind::Walls, number).wall.unwrap();
-    let truth = 0.5 * stiffness * environments::PERIOD + damping;
-    for candidate in candidates() {
-        let said = evaluated(&candidate.method, Kind::Walls, number).unwrap();
-        let Some((lo, hi)) = said.alpha else { continue };
-        let width = match candidate.method {
-            IndexMethod::Enclosure(tolerance) => tolerance.max(1e-12),
-            _ => 1e-12,
-        };
-        let near = |end: f64| (end / truth - 1.0).abs() <= width;
-        assert!(near(lo) && near(hi), "{}: {lo} {hi} {truth}", candidate.name);
-    }
-}
