@@ -5,6 +5,8 @@ use std::ops::Range;
 use haptic_servo::torque::LimitReason;
 use plotters::prelude::*;
 
+use Direction::{Falling, Level, Rising, Upright};
+
 use super::base::{Area, Drawn, UNITS, units};
 use super::palette::{FAINT, FORBIDDEN};
 use crate::simulation::tick_status::TickStatus;
@@ -26,7 +28,6 @@ pub enum Direction {
     Level,
     Upright,
 }
-use Direction::{Falling, Level, Rising, Upright};
 
 impl Fill {
     /// The fill behind samples of this status, and its meaning; `None` for those whose torque was not

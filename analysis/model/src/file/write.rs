@@ -3,10 +3,8 @@
 mod moving;
 mod shaped;
 
-use std::fmt::Write;
-
 use haptic_servo::current::IndexOffset;
-use haptic_servo::environment::{Coefficients, Environment, Wall};
+use haptic_servo::environment::{Environment, Wall};
 use haptic_servo::host::HostTorque;
 use haptic_servo::magnetic::Chip;
 use haptic_servo::parameter::{Parameter, Range};
@@ -263,10 +261,10 @@ fn environment(lines: &mut Vec<String>, environment: &Environment) {
                 lines.push(format!("{} = {}", key.name(), number_of(key, value)));
             }
             (None, Some(rational)) if *key == key::NUMERATOR => {
-                lines.push(format!("numerator = {}", list(&rational.numerator)));
+                lines.push(format!("numerator = {:?}", rational.numerator.as_slice()));
             }
             (None, Some(rational)) if *key == key::DENOMINATOR => {
-                lines.push(format!("denominator = {}", list(&rational.denominator)));
+                lines.push(format!("denominator = {:?}", rational.denominator.as_slice()));
             }
             _ => {}
         }
@@ -282,16 +280,6 @@ fn number_of(key: &Key, value: f64) -> String {
         Bound::Number(Range::Whole(..)) => format!("{value}"),
         _ => format!("{value:?}"),
     }
-}
-
-fn list(coefficients: &Coefficients) -> String {
-    let mut text = String::from("[");
-    for (index, coefficient) in coefficients.as_slice().iter().enumerate() {
-        let apart = if index == 0 { "" } else { ", " };
-        // Writing to a string does not fail.
-        let _ = write!(text, "{apart}{coefficient:?}");
-    }
-    text + "]"
 }
 
 /// A string in the notation of TOML's basic strings, which is that of JSON.
