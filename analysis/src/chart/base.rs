@@ -24,7 +24,8 @@ pub fn text(size: i32) -> TextStyle<'static> {
     TextStyle::from((FONT, size)).color(&BLACK)
 }
 
-/// Text with its anchor on the given side.
-pub fn anchored(horizontal: HPos, vertical: VPos) -> TextStyle<'static> {
-    text(LABEL).pos(Pos::new(horizontal, vertical))
+/// Writes words; the point is the middle of their left or right side, or of all of them.
+pub fn write(area: &Area<'_>, point: (i32, i32), side: HPos, words: &str) -> Drawn<()> {
+    let style = text(LABEL).pos(Pos::new(side, VPos::Center));
+    area.draw(&Text::new(words.to_owned(), point, style))
 }

@@ -1,9 +1,9 @@
 //! Places names beside points and lines without overlaps, if there is room.
 
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, VPos};
+use plotters::style::text_anchor::HPos;
 
-use super::base::{Area, Drawn, LABEL, UNITS, anchored, units};
+use super::base::{Area, Drawn, LABEL, UNITS, units, write};
 
 /// Width of a letter relative to the size of its font: more than the mean of the used letters, so that a name
 /// is never longer than its block.
@@ -118,7 +118,7 @@ impl Labels {
     }
 
     /// The nearest place to a point where a name of this size fits and belongs to the point; otherwise a
-    /// place with a leader line to the point, which is true of it. `None` if the panel is full.
+    /// place that needs a leader line to the point, and `true`. `None` if the panel is full.
     fn place(&self, point: (i32, i32), (width, height): (i32, i32)) -> Option<(Block, bool)> {
         let (x, y) = point;
         let around = (0..DISTANCES).flat_map(|distance| {
@@ -185,8 +185,7 @@ impl Labels {
         let free = corners.map(block).find(|block| self.is_free(block));
         let Some(block) = free else { return Ok(()) };
         self.take(block);
-        let place = (block.left + BESIDE, block.middle());
-        area.draw(&Text::new(word.to_owned(), place, anchored(HPos::Left, VPos::Center)))
+        write(area, (block.left + BESIDE, block.middle()), HPos::Left, word)
     }
 
     /// Writes a name beside a point, with a thin leader line if it is far away or nearer to another point.
@@ -205,8 +204,7 @@ impl Labels {
             x if x >= block.right - quarter => (HPos::Right, block.right),
             _ => (HPos::Center, (block.left + block.right) / 2),
         };
-        let style = anchored(side, VPos::Center);
-        area.draw(&Text::new(name.to_owned(), (edge, block.middle()), style))
+        write(area, (edge, block.middle()), side, name)
     }
 }
 

@@ -1,9 +1,9 @@
 //! Legends: samples of lines, fills and marks, with the words for each.
 
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, VPos};
+use plotters::style::text_anchor::HPos;
 
-use super::base::{Area, Drawn, anchored, units};
+use super::base::{Area, Drawn, units, write};
 use super::hatch::Fill;
 use super::mark::Mark;
 use super::stroke::Stroke;
@@ -65,9 +65,7 @@ impl Legend {
                 sample.draw(area, (units(left), units(top + ROW / 2)))?;
                 for (line, words) in words.iter().enumerate() {
                     let place = (left + SAMPLE.1 + GAP, top + ROW * line as i32 + ROW / 2);
-                    let style = anchored(HPos::Left, VPos::Center);
-                    let place = (units(place.0), units(place.1));
-                    area.draw(&Text::new(words.clone(), place, style))?;
+                    write(area, (units(place.0), units(place.1)), HPos::Left, words)?;
                 }
             }
             top += ROW * lines(&row);
