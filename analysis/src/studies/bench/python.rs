@@ -61,11 +61,9 @@ impl PythonPeers {
         let about = peer.ask(&format!("about {name}"))?;
         let values = peer.numbers(&format!("values {name}"))?;
         let ours: Vec<_> = scenes.iter().map(|scene| assess(scene).outcome.is_ok()).collect();
-        let count = |is_it: &dyn Fn(f64, bool) -> bool| {
-            values.iter().zip(&ours).filter(|(theirs, ours)| is_it(**theirs, **ours)).count()
-        };
-        let undecided = count(&|theirs, _| theirs.is_nan());
-        let wrong = count(&|theirs, ours| !theirs.is_nan() && (theirs == 1.0) != ours);
+        let undecided = values.iter().filter(|theirs| theirs.is_nan()).count();
+        let decided = values.iter().zip(&ours).filter(|(theirs, _)| !theirs.is_nan());
+        let wrong = decided.filter(|(theirs, ours)| (**theirs == 1.0) != **ours).count();
         let each = 1e6 / scenes.len() as f64;
         let timed = format!("seconds {name}");
         // The second run counts, so that the caches are filled.

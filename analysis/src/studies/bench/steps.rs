@@ -85,12 +85,9 @@ pub fn steps_beside(
 /// Refuses a motion of a peer that differs by more than rounding.
 fn same_motion(peer: &str, theirs: &[f64], ours: &Trajectory) -> Result<(), StudyError> {
     let columns = [&ours.position, &ours.velocity, &ours.torque];
-    if theirs.len() != 3 * STEPS {
-        return Err(StudyError::WrongPeer(format!(
-            "{} of {} values: {peer}",
-            theirs.len(),
-            3 * STEPS
-        )));
+    let (found, all) = (theirs.len(), 3 * STEPS);
+    if found != all {
+        return Err(StudyError::WrongPeer(format!("{found} of {all} values: {peer}")));
     }
     for (ours, theirs) in columns.into_iter().zip(theirs.chunks(STEPS)) {
         let largest = ours.iter().fold(0.0, |most: f64, value| most.max(value.abs()));

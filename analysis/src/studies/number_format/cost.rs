@@ -19,13 +19,9 @@ pub struct Cost {
 impl Cost {
     /// Of a board's outputs.
     pub fn of<'o>(outputs: impl IntoIterator<Item = &'o Output>) -> Self {
-        let (mut most, mut sum, mut count) = (0, 0.0, 0.0);
-        for output in outputs {
-            most = output.instructions.max(most);
-            sum += f64::from(output.instructions);
-            count += 1.0;
-        }
-        Self { most, mean: sum / count }
+        let all: Vec<_> = outputs.into_iter().map(|output| output.instructions).collect();
+        let sum: f64 = all.iter().copied().map(f64::from).sum();
+        Self { most: all.iter().copied().max().unwrap_or(0), mean: sum / all.len() as f64 }
     }
 }
 
