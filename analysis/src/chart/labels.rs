@@ -42,7 +42,7 @@ impl Block {
         Self { left, top, right, bottom }
     }
 
-    /// What is at most `reach` from a vertical or horizontal line, or from a point.
+    /// All places at most `reach` beside a vertical or horizontal line, or a point.
     fn around(a: (i32, i32), b: (i32, i32), reach: i32) -> Self {
         let (left, top) = (a.0.min(b.0) - reach, a.1.min(b.1) - reach);
         Self { left, top, right: a.0.max(b.0) + reach, bottom: a.1.max(b.1) + reach }
