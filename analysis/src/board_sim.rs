@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 pub use haptic_client::simulated::{Pacing, SimulatedBoard, SimulatedBoardError};
 
 use haptic_client::Address;
-use haptic_client::simulated::{Listener, PlantIo};
+use haptic_client::simulated::{Listener, PlantIo, ReadingOutcome};
 
 use crate::bridge_board::BridgeBoard;
 use crate::shaft::HandHeldShaft;
@@ -54,6 +54,7 @@ impl DrivingBoard {
                 plant.hold(sample.applied_code());
                 // A recording that has ended stands still.
                 *count = Some(plant.count().or(*count).unwrap_or(0));
+                board.reading_fails(plant.reading() != ReadingOutcome::Read);
                 Ok(sample.sent)
             }
             Self::Bridge { board, shaft } => {

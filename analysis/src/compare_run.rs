@@ -146,7 +146,7 @@ fn run_lockstep(
 ) -> Result<RunOutcome, RunError> {
     let (run, board) = match board {
         None => {
-            let own = |_, tick: &Tick| Ok::<_, RunError>(tick.code);
+            let own = |_, _, tick: &Tick| Ok::<_, RunError>(tick.code);
             let run = run_beside(plant, controller, own, ticks, progress)?;
             (run, None)
         }
@@ -155,7 +155,7 @@ fn run_lockstep(
             let mut board = Emulator::boot(elf)?;
             board.arm_and_wait()?;
             let mut ticks_before = 0..;
-            let remote = |count, _: &Tick| {
+            let remote = |count, _, _: &Tick| {
                 let tick = ticks_before.next().unwrap_or_default();
                 board.exchange(count).map_err(|source| RunError::EmulatedBoard { tick, source })
             };
@@ -165,7 +165,10 @@ fn run_lockstep(
         Some(Backend::VirtualBoard { program, board, elf, period, is_magnetic }) => {
             let mut board = VirtualBoard::boot(program, board, elf, None, is_magnetic)?;
             board.arm_and_wait(period)?;
-            let remote = |count, _: &Tick| board.exchange(count, &[]).map(|(code, _)| code);
+            let remote = |count, fails, _: &Tick| {
+                board.reading_fails(fails);
+                board.exchange(count, &[]).map(|(code, _)| code)
+            };
             let run = run_beside(plant, controller, remote, ticks, progress)?;
             (run, Some(BoardMeasurement::Virtual(board.finish()?)))
         }

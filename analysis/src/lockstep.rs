@@ -4,7 +4,7 @@
 use std::convert::Infallible;
 use std::fmt;
 
-pub use haptic_client::simulated::{PlantIo, SimulatedDevice};
+pub use haptic_client::simulated::{PlantIo, ReadingOutcome, SimulatedDevice};
 
 use crate::controller::{Controller, Tick};
 
@@ -95,17 +95,17 @@ impl Run {
 
 /// Runs at most `ticks` ticks of a servo on this machine alone.
 pub fn run(plant: &mut dyn PlantIo, controller: &mut dyn Controller, ticks: usize) -> Run {
-    let own = |_, tick: &Tick| Ok::<_, Infallible>(tick.code);
+    let own = |_, _, tick: &Tick| Ok::<_, Infallible>(tick.code);
     let Ok(run) = run_beside(plant, controller, own, ticks, || {});
     run
 }
 
-/// Runs at most `ticks` ticks. The codes of `remote`, for a count and the tick of the servo here, move the
-/// device, and the servo here is compared with them. `progress` is called after each tick.
+/// Runs at most `ticks` ticks. The codes of `remote`, for a count, whether its reading has failed, and the tick of
+/// the servo here, move the device, and the servo here is compared with them. `progress` is called after each tick.
 pub fn run_beside<E>(
     plant: &mut dyn PlantIo,
     controller: &mut dyn Controller,
-    mut remote: impl FnMut(i32, &Tick) -> Result<u16, E>,
+    mut remote: impl FnMut(i32, bool, &Tick) -> Result<u16, E>,
     ticks: usize,
     mut progress: impl FnMut(),
 ) -> Result<Run, E> {
@@ -113,13 +113,14 @@ pub fn run_beside<E>(
     while run.ticks.len() < ticks
         && let Some(count) = plant.count()
     {
+        let reading = plant.reading();
         // Held: the first reading does not fail.
-        let held = run.ticks.last().filter(|_| plant.is_left_out());
+        let held = run.ticks.last().filter(|_| reading == ReadingOutcome::LeftOut);
         let (tick, code) = match held {
             Some(held) => (Tick { is_left_out: true, ..*held }, held.code),
             None => {
                 let tick = controller.tick(count);
-                (tick, remote(count, &tick)?)
+                (tick, remote(count, reading != ReadingOutcome::Read, &tick)?)
             }
         };
         plant.hold(code);

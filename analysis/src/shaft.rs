@@ -16,6 +16,7 @@ use crate::device::Energy;
 use crate::disturbance::Disturbance;
 use crate::hand::HandTrajectory;
 use crate::lockstep::{PlantIo, SimulatedDevice};
+use crate::missed::{Missed, Ticks};
 use crate::simulation::SimulationError;
 
 /// Largest deviation of a time from a whole number of steps, in steps, that counts as rounding.
@@ -34,6 +35,11 @@ pub trait Shaft {
     /// A period of the servo begins; false if there are no more, as at the end of a recording.
     fn begin(&mut self) -> bool {
         true
+    }
+
+    /// Whether the reading of the next period but one of the servo fails; asked once in a period.
+    fn reading_fails(&mut self) -> bool {
+        false
     }
 
     /// Turns for a time in s with this mean torque of the motor in N m; returns the motion at the end.
@@ -127,6 +133,8 @@ impl Shaft for RecordedShaft<'_> {
 /// The shaft of a scene's device, in a hand that follows a trajectory.
 pub struct HandHeldShaft {
     device: SimulatedDevice,
+    /// Which readings of the servo fail.
+    failing: Ticks,
     step: f64,
     /// Time in s since the last whole step, and the integral of the motor's torque over it, in N m s.
     time: f64,
@@ -142,12 +150,20 @@ impl HandHeldShaft {
     ) -> Result<Self, SimulationError> {
         let step = current_loop.response().delay;
         let device = SimulatedDevice::on_shaft(scene, trajectory, transducers, step)?;
-        Ok(Self { device, step, time: 0.0, impulse: 0.0 })
+        let failing = Missed::None.ticks();
+        Ok(Self { device, failing, step, time: 0.0, impulse: 0.0 })
     }
 
     /// The same with friction and cogging of its motor.
     pub fn with_disturbance(self, disturbance: Disturbance) -> Self {
         Self { device: self.device.with_disturbance(disturbance), ..self }
+    }
+
+    /// The same with readings of the encoder that fail, from the third on.
+    pub fn failing(self, dropped: Missed) -> Self {
+        let mut failing = dropped.ticks();
+        let _ = failing.nth(1);
+        Self { failing, ..self }
     }
 
     /// The hand lets go, or follows its trajectory.
@@ -174,6 +190,10 @@ impl HandHeldShaft {
 }
 
 impl Shaft for HandHeldShaft {
+    fn reading_fails(&mut self) -> bool {
+        self.failing.next().unwrap_or(false)
+    }
+
     /// A part of a step, which occurs only when a board starts its timer, waits for the rest of it.
     fn turn(&mut self, torque: f64, seconds: f64) -> ShaftMotion {
         self.time += seconds;

@@ -122,9 +122,14 @@ pub struct VirtualBoard {
     process: Child,
     input: Option<BufWriter<ChildStdin>>,
     output: BufReader<ChildStdout>,
-    /// The encoder's position in counts, as the simulated world has it, and that a period of the modulation before.
+    /// The encoder's position in counts, as the simulated world has it, and that which a chip's last good transfer before
+    /// an update of the modulation has read.
     count: i32,
     before: i32,
+    /// Whether the chip's transfers fail from the next answer on.
+    fails: bool,
+    /// Periods of the modulation in the sample before.
+    turns: usize,
     /// Of a magnetic encoder's reading at rest: none of a counter.
     rest: Option<Rest>,
     decoder: Box<Decoder<{ LONGEST_TO_HOST + CHECKSUM }>>,
@@ -180,7 +185,8 @@ impl VirtualBoard {
         let (input, output) = (Some(BufWriter::new(input)), BufReader::new(output));
         let rest = is_magnetic.then(Rest::default);
         let (decoder, told) = (Box::new(Decoder::new()), Vec::new());
-        Ok(Self { process, input, output, count: 0, before: 0, rest, decoder, told })
+        let (count, before, fails, turns) = (0, 0, false, 0);
+        Ok(Self { process, input, output, count, before, fails, turns, rest, decoder, told })
     }
 
     /// Waits for the end of the sample that runs.
@@ -199,6 +205,11 @@ impl VirtualBoard {
         let turned = count.wrapping_sub(self.count);
         self.count = count;
         self.write_answer(turned, bytes).map_err(|error| self.stopped(&error))
+    }
+
+    /// Whether a chip's transfers fail from the next answer on. A counter's readings do not.
+    pub fn reading_fails(&mut self, fails: bool) {
+        self.fails = fails;
     }
 
     /// The board waits for a count and holds the code that it computed before: the code of that sample is the
@@ -266,30 +277,42 @@ impl VirtualBoard {
     }
 
     fn read_sample(&mut self, mut shaft: Option<&mut dyn Shaft>) -> io::Result<Sample> {
-        let mut is_first = true;
+        let mut turns = 0;
         loop {
             match (self.bytes()?, &mut shaft) {
-                ([SAMPLE], _) => return self.rest_of_sample(),
+                ([SAMPLE], _) => {
+                    self.turns = turns;
+                    return self.rest_of_sample();
+                }
                 ([PWM_PERIOD], Some(shaft)) => {
-                    self.turn(*shaft, std::mem::take(&mut is_first))?;
+                    turns += 1;
+                    self.turn(*shaft, turns)?;
                 }
                 _ => return Err(io::ErrorKind::InvalidData.into()),
             }
         }
     }
 
-    /// A period of the modulation has ended, the first of a sample or another, of which the servo reads one.
-    fn turn(&mut self, shaft: &mut dyn Shaft, is_first: bool) -> io::Result<()> {
+    /// A period of the modulation has ended, the one of this number in its sample. The servo reads the transfer before
+    /// the last one's end; its reading fails if all since the reading before fail.
+    fn turn(&mut self, shaft: &mut dyn Shaft, number: usize) -> io::Result<()> {
         let torque = f64::from_le_bytes(self.bytes()?);
         let seconds = f64::from_le_bytes(self.bytes()?);
         let ShaftMotion { count, angle, speed } = shaft.turn(torque, seconds);
-        let count = self.rest.as_mut().map_or(count, |rest| rest.reads(count, is_first));
+        let count = self.rest.as_mut().map_or(count, |rest| rest.reads(count, number == 1));
         let turned = count.wrapping_sub(self.count);
-        (self.before, self.count) = (self.count, count);
+        if !self.fails {
+            self.before = self.count;
+        }
+        self.count = count;
+        if number == self.turns {
+            self.fails = shaft.reading_fails();
+        }
         let input = self.input.as_mut().ok_or(io::ErrorKind::BrokenPipe)?;
         input.write_all(&turned.to_le_bytes())?;
         input.write_all(&angle.to_le_bytes())?;
         input.write_all(&speed.to_le_bytes())?;
+        input.write_all(&[self.fails.into()])?;
         input.flush()
     }
 
@@ -321,6 +344,7 @@ impl VirtualBoard {
         let input = self.input.as_mut().ok_or(io::ErrorKind::BrokenPipe)?;
         let length = u16::try_from(bytes.len()).map_err(io::Error::other)?;
         input.write_all(&turned.to_le_bytes())?;
+        input.write_all(&[self.fails.into()])?;
         input.write_all(&length.to_le_bytes())?;
         input.write_all(bytes)?;
         input.flush()

@@ -174,6 +174,52 @@ fn the_device_of_a_file_cogs_and_rubs() {
     assert!(held < std::f64::consts::TAU / 84.0, "{held}");
 }
 
+/// As many readings fail in a row as the scene allows: the one before takes their place, or their ticks are missed
+/// updates. One more is a fault.
+#[test]
+fn readings_fail_as_the_file_says() {
+    const WALL: &str = r#"
+        name = "wall"
+        device = { inertia = 2.2e-5, damping = 0.022 }
+        servo = { period = 0.001 }
+        environment = { type = "damper-wall", stiffness = 4.0, damping = 0, delay = 1 }
+        encoder = { dropped = 2 }
+        limits = { torque = 1.0 }
+        simulation = { samples = 9, dropped = { every = 3, length = 2 } }"#;
+    let run = |replaced: &[(&str, &str)]| {
+        let text = replaced.iter().fold(WALL.to_owned(), |text, (from, to)| text.replace(from, to));
+        let file = parse("wall.toml", Format::Toml, &text).unwrap();
+        let board = SimulatedBoard::of_file(&file, &loopback(), Pacing::Unthrottled).unwrap();
+        let mut link = Link::open(board.address()).unwrap();
+        let armed = link.arm().unwrap();
+        let mut rows = Vec::new();
+        link.telemetry(Duration::from_secs(60), NonZeroU32::MIN, |sample| {
+            rows.push((sample.tick, sample.position));
+            rows.len() < 3000
+        })
+        .unwrap();
+        (rows, link.status().unwrap(), armed)
+    };
+    let (rows, held, armed) = run(&[]);
+    assert_eq!((armed, held.fault, held.missed), (RequestResult::Done, None, 0));
+    // One tick in three reads.
+    let read = |rows: &[(u64, f64)], tick: u64| {
+        let of = |two: &&[(u64, f64)]| two[1].0 % 3 == tick && two[1].0 - two[0].0 == 1;
+        let moved = rows.windows(2).filter(of).filter(|two| two[0].1 != two[1].1);
+        moved.count()
+    };
+    let mut moved = [0, 1, 2].map(|tick| read(&rows, tick));
+    moved.sort_unstable();
+    assert!(moved[..2] == [0, 0] && moved[2] > 100, "{moved:?}");
+    let longer = ("period = 0.001", "period = 0.001, worst_period = 0.003");
+    let (rows, left_out, _) = run(&[longer, ("damping = 0,", "damping = 0.001,")]);
+    assert!(left_out.fault.is_none() && left_out.missed > 2000, "{left_out:?}");
+    assert!(rows.windows(2).all(|two| (two[1].0 - two[0].0) % 3 == 0), "{rows:?}");
+    let (.., armed) = run(&[("dropped = 2", "dropped = 1")]);
+    let RequestResult::Refused(why) = armed else { panic!("{armed:?}") };
+    assert!(why.contains("failed more than 1 times in a row"), "{why}");
+}
+
 #[test]
 fn a_scene_that_no_board_renders_does_not_start() {
     let rejected = board(4e3).unwrap_err();

@@ -7,8 +7,13 @@ pub enum Missed {
     /// None.
     #[default]
     None,
-    /// The last of every so many ticks.
-    Every(u32),
+    /// The last ones of every so many ticks.
+    Every {
+        /// Ticks from the last of them to the last of the next, more than `length`.
+        count: u32,
+        /// How many are missed, one after the other.
+        length: u32,
+    },
     /// Each with this probability, the same ones for the same seed.
     Random {
         /// Probability, at least 0 and less than 1.
@@ -54,7 +59,10 @@ impl Iterator for Ticks {
         self.k += 1;
         let missed = match self.missed {
             Missed::None => false,
-            Missed::Every(count) => k % u64::from(count.max(1)) == u64::from(count.max(1)) - 1,
+            Missed::Every { count, length } => {
+                let count = u64::from(count.max(1));
+                k % count + u64::from(length) >= count
+            }
             Missed::Random { fraction, .. } => self.random.f64() < fraction,
         };
         Some(missed && k > 0)
@@ -68,7 +76,9 @@ mod tests {
     #[test]
     fn misses_what_it_says() {
         let first = |missed: Missed| missed.ticks().take(10_000).collect::<Vec<_>>();
-        assert_eq!(first(Missed::Every(2))[..5], [false, true, false, true, false]);
+        let every = |count, length| first(Missed::Every { count, length });
+        assert_eq!(every(2, 1)[..5], [false, true, false, true, false]);
+        assert_eq!(every(3, 2)[..5], [false, true, true, false, true]);
         let random = first(Missed::Random { fraction: 0.1, seed: 7 });
         assert_eq!(random, first(Missed::Random { fraction: 0.1, seed: 7 }));
         let count = random.iter().filter(|&&missed| missed).count();

@@ -22,6 +22,7 @@ use crate::hand::HandTrajectory;
 use crate::identify::rig::DrivenDevice;
 use crate::link::Address;
 use crate::lockstep::SimulatedDevice;
+use crate::missed::Missed;
 use crate::program::Program;
 use crate::program::identify::{PERIOD, TRANSDUCERS};
 use crate::shaft::HandHeldShaft;
@@ -120,8 +121,8 @@ fn of_program(
 ) -> Result<SimulatedBoard, CommandError> {
     let &Program { scene, transducers, .. } = program;
     let hand = (program.trajectory)().repeated_until(HAND_DURATION);
-    let disturbance = Disturbance::default();
-    let surroundings = Surroundings { scene, transducers, hand, disturbance };
+    let (disturbance, dropped) = (Disturbance::default(), Missed::None);
+    let surroundings = Surroundings { scene, transducers, hand, disturbance, dropped };
     let Some(board) = board else {
         let listening = program.listen(surroundings.device()?, port, Pacing::RealTime);
         return listening.map_err(not_listening(port));
@@ -141,10 +142,13 @@ fn of_file(
         return Ok(SimulatedBoard::of_file(file, port, Pacing::RealTime)?);
     };
     let program = FileProgram::of(file, source, None, None)?;
+    let dropped = file.dropped();
+    program.check_dropped(dropped != Missed::None)?;
     let built = VirtualBoardBuild::of_file(board, &program, NumberFormat::F32)?;
     let (scene, transducers) = (file.scene, file.transducers(None, None));
     let hand = file.demonstration().repeated_until(HAND_DURATION);
-    Surroundings { scene, transducers, hand, disturbance: file.disturbance() }.around(&built, port)
+    let disturbance = file.disturbance();
+    Surroundings { scene, transducers, hand, disturbance, dropped }.around(&built, port)
 }
 
 /// The device and the hand around a board.
@@ -153,13 +157,15 @@ struct Surroundings {
     transducers: Transducers,
     hand: HandTrajectory,
     disturbance: Disturbance,
+    /// Readings of the encoder that fail.
+    dropped: Missed,
 }
 
 impl Surroundings {
     /// Behind a DAC.
     fn device(self) -> Result<Box<SimulatedDevice>, CommandError> {
         let device = SimulatedDevice::new(&self.scene, self.hand, &self.transducers)?;
-        Ok(Box::new(device.with_disturbance(self.disturbance)))
+        Ok(Box::new(device.with_disturbance(self.disturbance).failing(self.dropped)))
     }
 
     /// A virtual board with them behind its port.
@@ -170,9 +176,9 @@ impl Surroundings {
     ) -> Result<SimulatedBoard, CommandError> {
         let period = self.scene.timing.period;
         let board = if let Some((board, current_loop)) = built.boot_bridge()? {
-            let Self { scene, transducers, hand, disturbance } = self;
+            let Self { scene, transducers, hand, disturbance, dropped } = self;
             let shaft = HandHeldShaft::new(&scene, hand, &transducers, current_loop)?;
-            let shaft = Box::new(shaft.with_disturbance(disturbance));
+            let shaft = Box::new(shaft.with_disturbance(disturbance).failing(dropped));
             DrivingBoard::Bridge { board: Box::new(board), shaft }
         } else {
             DrivingBoard::Dac { board: built.boot()?, plant: self.device()?, count: None }

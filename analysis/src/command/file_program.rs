@@ -9,7 +9,7 @@ use haptic_servo::servo::Transducers;
 
 use super::building::building;
 use super::status::CommandError;
-use crate::file::{DeviceFile, SceneFile, program};
+use crate::file::{DeviceFile, SceneFile, key, program};
 use crate::program::Program;
 use crate::toolchain::{
     self, BoardModel, NumberFormat, OtherDevice, Sources, Toolchain, TorqueOutput,
@@ -57,6 +57,16 @@ impl FileProgram {
         Ok(Self { source: name.to_owned(), text, is_certified, chip: file.chip, bridge: None })
     }
 
+    /// Refuses readings that fail on a virtual board without a chip, unless its counts may stand for them.
+    pub fn check_dropped(&self, counts_do_not: bool) -> Result<(), CommandError> {
+        if self.chip.is_some() || !counts_do_not {
+            return Ok(());
+        }
+        Err(dropped_refused(
+            "the virtual board counts its encoder's edges, which do not fail: state `encoder.chip`",
+        ))
+    }
+
     /// What makes its torques.
     pub fn output(&self) -> TorqueOutput {
         if self.bridge.is_some() { TorqueOutput::Bridge } else { TorqueOutput::Dac }
@@ -91,6 +101,14 @@ impl FileProgram {
             _ => "scene",
         }
     }
+}
+
+/// The reason why a command does not simulate readings that fail.
+pub fn dropped_refused(why: &str) -> CommandError {
+    let key = key::FAILED.path;
+    let error =
+        format!("`{key}` cannot be used here: {why}; `--target host` and `haptic simulate` use it");
+    CommandError::Failed(error.into())
 }
 
 /// The device of a file, for a program.

@@ -15,7 +15,7 @@ use haptic_servo::servo::{OutputTiming, Transducers};
 use serde::Serialize;
 
 use super::building::{emulated, set_up};
-use super::file_program::FileProgram;
+use super::file_program::{FileProgram, dropped_refused};
 use super::file_scene::{hand_trajectory, scene_file};
 use super::outcome::{section, text};
 use super::shared_arguments::{DEFAULT_TICKS, JsonOption, MAX_TICKS, json};
@@ -29,7 +29,7 @@ use crate::controller::{Controller, controller};
 use crate::counts_csv;
 use crate::device::Energy;
 use crate::disturbance::Disturbance;
-use crate::file::{SceneFile, key};
+use crate::file::SceneFile;
 use crate::hand::HandTrajectory;
 use crate::host_run::BesideHost;
 use crate::lockstep::{Difference, SimulatedDevice};
@@ -257,7 +257,8 @@ fn ran(
             None => {
                 let hand = trajectory.clone();
                 let shaft = HandHeldShaft::new(scene, hand, transducers, current_loop)?;
-                ShaftInput::Hand(Box::new(shaft.with_disturbance(*disturbance)))
+                let shaft = shaft.with_disturbance(*disturbance).failing(*dropped);
+                ShaftInput::Hand(Box::new(shaft))
             }
         };
         let outcome = run_on_bridge(input, controller, board, scene, ticks, progress);
@@ -318,7 +319,7 @@ fn ran_beside_host(
     progress: impl FnMut(),
 ) -> Result<RunOutcome, CommandError> {
     let beside = setup.host(law, arguments.format)?;
-    let RunSetup { scene, transducers, trajectory, disturbance, dropped, .. } = setup;
+    let RunSetup { scene, transducers, trajectory, disturbance, .. } = setup;
     let controller = setup.controller.as_mut();
     if let Built::Virtual(flashed) = built
         && let Some((board, current_loop)) = flashed.boot_bridge()?
@@ -328,7 +329,7 @@ fn ran_beside_host(
         return Ok(beside.run_on_bridge(board, controller, shaft, ticks, progress)?);
     }
     let device = SimulatedDevice::new(scene, trajectory.clone(), transducers)?;
-    let device = device.with_disturbance(*disturbance).failing(*dropped);
+    let device = device.with_disturbance(*disturbance);
     Ok(match built.backend(beside.scene.timing.period) {
         None => beside.run(controller, device, ticks, progress).map_err(RunError::from)?,
         Some(backend) => beside.run_on(backend, controller, device, ticks, progress)?,
@@ -336,7 +337,8 @@ fn ran_beside_host(
 }
 
 impl RunSetup {
-    /// Refuses readings that fail more often than the scene allows, or where no target here leaves a tick out.
+    /// Refuses readings that fail more often than the scene allows, or where the board has none that fail as on the
+    /// host. Beside a host the certificate allows none.
     fn check_dropped(&self, arguments: &Arguments, ticks: usize) -> Result<(), CommandError> {
         let Scene { timing, latency, .. } = &self.scene;
         let allowed = latency.encoder.dropped;
@@ -345,32 +347,19 @@ impl RunSetup {
             let time = sample as f64 * timing.period;
             return Err(SimulationError::Readings { sample, time, allowed }.into());
         }
-        let is_on_board = matches!(arguments.target, Target::Board(_));
-        let has_bridge = match &self.program {
-            RunProgram::Named(program) => program.bridge.is_some(),
-            RunProgram::OfFile(program) => {
-                program.as_ref().is_some_and(|program| program.bridge.is_some())
+        match (&self.program, arguments.target) {
+            (RunProgram::OfFile(Some(program)), Target::Board(_))
+                if self.dropped != Missed::None =>
+            {
+                program.check_dropped(leaves_out || program.bridge.is_some())?;
+                if leaves_out {
+                    let why = "this scene leaves such ticks out, and a run compares the code of each tick";
+                    return Err(dropped_refused(why));
+                }
+                Ok(())
             }
-        };
-        let why = match () {
-            () if self.dropped == Missed::None => return Ok(()),
-            () if is_on_board && has_bridge => {
-                "its virtual bridge reads an encoder that does not fail"
-            }
-            () if !leaves_out => return Ok(()),
-            () if is_on_board => {
-                "the virtual board's encoder does not fail, and this scene leaves such ticks out"
-            }
-            () if arguments.host.is_some() => {
-                "this scene leaves such ticks out, which --host does not"
-            }
-            () => return Ok(()),
-        };
-        let key = key::FAILED.path;
-        let error = format!(
-            "`{key}` cannot be used here: {why}; `--target host` and `haptic simulate` use it"
-        );
-        Err(CommandError::Failed(error.into()))
+            _ => Ok(()),
+        }
     }
 
     /// The host beside the scene, with its tank or without.
@@ -452,7 +441,7 @@ fn of_file(file: SceneFile, arguments: &Arguments) -> Result<RunSetup, CommandEr
     };
     let (report, trajectory) = (judge_file(&file, Format::F64), hand_trajectory(&file));
     let disturbance = file.disturbance();
-    let dropped = file.simulation.as_ref().map_or(Missed::None, |simulation| simulation.dropped);
+    let dropped = file.dropped();
     let stores = file.supply.is_some_and(|supply| supply.stores());
     let (scene, budget) = (file.scene, file.host);
     let program = RunProgram::OfFile(program);
@@ -483,13 +472,13 @@ fn unused(file: &SceneFile, arguments: &Arguments) -> Vec<String> {
         let rigid = "the device runs as one rigid body, with all of its inertia and damping";
         notes.push(format!("{rigid}; `haptic simulate` includes its masses"));
     }
-    if let Some(simulation) = &file.simulation {
+    if file.simulation.is_some() {
         let instead = if is_replay {
             "the counts are those of the recording".to_owned()
         } else {
             format!("here {}", hand_trajectory(file).description)
         };
-        let drops = !is_replay && simulation.dropped != Missed::None;
+        let drops = !is_replay && file.dropped() != Missed::None;
         let but = if drops { " but for `dropped`" } else { "" };
         notes.push(format!("[simulation]{but} is not used: {instead}; `haptic simulate` uses it"));
     }

@@ -142,6 +142,44 @@ fn a_chip_that_answers_late_has_the_codes_of_the_host() {
     );
 }
 
+/// The transfers of a chip fail in a row as often as its certificate allows: the board replaces each reading by the one
+/// before, as this machine does.
+#[test]
+#[ignore = "builds for minutes"]
+fn readings_that_fail_have_the_codes_of_the_host() {
+    const WALL: &str = include_str!("../../virtual-board/tests/board/magnetic_wall.toml");
+    const KNOB: &str = include_str!("../../virtual-board/tests/board/bridge/magnetic_knob.toml");
+    let folder = TempDir::new().unwrap();
+    let failing =
+        "noise = 2\ndropped = 2\n[simulation]\nsamples = 1\ndropped = { every = 3, length = 2 }";
+    let knob = KNOB.replace("noise = 2", failing).replace("stiffness = 0.8", "stiffness = 0.4");
+    let wall = WALL.replace("dropped = 1\n", "").replace("noise = 2", failing);
+    for (scene, target) in [(wall, "board:nucleo-g474re"), (knob, "board:b-g431b-esc1")] {
+        let file = folder.path().join("failing.toml");
+        std::fs::write(&file, scene).unwrap();
+        let ran = haptic(&[
+            "run",
+            file.to_str().unwrap(),
+            "--target",
+            target,
+            "--ticks",
+            "3000",
+            "--csv",
+        ]);
+        // 1 where a code differs.
+        assert_eq!(ran.status.code(), Some(0), "{}", String::from_utf8_lossy(&ran.stderr));
+        let (angles, torques) = columns(&ran.stdout);
+        assert!(torques.iter().any(|torque| torque.abs() > 1e-3), "{target}");
+        let moved = |tick: usize| {
+            let of = angles.windows(2).skip(tick).step_by(3);
+            of.filter(|two| two[0] != two[1]).count()
+        };
+        // From the second to the third tick, and so on, there is a reading.
+        assert_eq!((moved(0), moved(1)), (0, 0), "{target}");
+        assert!(moved(2) > 300, "{target}");
+    }
+}
+
 /// The largest programs: the current loop of a bridge, what opposes cogging, a host and a chip. The refusal
 /// of a larger program has the bytes.
 #[test]

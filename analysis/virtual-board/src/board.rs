@@ -360,6 +360,7 @@ impl VirtualBoard {
     /// Turns the encoder, which counts if the program has configured its pins as wired.
     pub fn turn_encoder(&mut self, counts: i32) {
         if let Some(magnetic) = &mut self.magnetic {
+            magnetic.is_cut = self.device.readings_fail();
             magnetic.turn(counts, self.now);
             return;
         }

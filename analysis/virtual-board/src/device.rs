@@ -8,6 +8,11 @@ pub trait Device {
     /// on, and whether the amplifier was on. Returns the encoder's counts in the sample.
     fn sample(&mut self, code: Option<u16>, amplifier: bool) -> i32;
 
+    /// Whether the transfers of a magnetic encoder fail from now on, until this is asked again with the next motion.
+    fn readings_fail(&self) -> bool {
+        false
+    }
+
     /// Ends a period of the board's own power stage, with its duration in s and the motor's mean torque in N
     /// m. Returns the motion at its end. By default the device stands still.
     fn turn(&mut self, torque: f64, seconds: f64) -> Motion {

@@ -34,6 +34,8 @@ pub struct HostLink {
     end: Option<io::Result<()>>,
     /// The last motion of the shaft.
     motion: Motion,
+    /// Whether the encoder's transfers fail from now on.
+    pub readings_fail: bool,
 }
 
 impl HostLink {
@@ -46,6 +48,7 @@ impl HostLink {
             from_board: Vec::new(),
             end: None,
             motion: Motion::default(),
+            readings_fail: false,
         }
     }
 
@@ -95,6 +98,7 @@ impl HostLink {
         self.output.write_all(&bytes)?;
         self.output.flush()?;
         let turned = i32::from_le_bytes(self.bytes()?);
+        self.readings_fail = self.bytes()? == [1];
         let mut bytes = vec![0; u16::from_le_bytes(self.bytes()?).into()];
         self.input.read_exact(&mut bytes)?;
         self.to_board.extend(bytes);
@@ -109,6 +113,7 @@ impl HostLink {
         let counts = i32::from_le_bytes(self.bytes()?);
         let angle = f64::from_le_bytes(self.bytes()?);
         let speed = f64::from_le_bytes(self.bytes()?);
+        self.readings_fail = self.bytes()? == [1];
         Ok(Motion { counts, angle, speed })
     }
 

@@ -46,6 +46,8 @@ pub struct MagneticEncoder {
     pub noise: i64,
     /// Whether an AS504x answers with the angle of this transfer, in a world whose positions have its age already.
     pub is_prompt: bool,
+    /// Whether its data line is cut, and at ground.
+    pub is_cut: bool,
     /// Its failure.
     pub failure: Option<Failure>,
     /// The last two positions in counts, each with its time.
@@ -91,6 +93,7 @@ impl MagneticEncoder {
             delay: 0,
             noise: 0,
             is_prompt: false,
+            is_cut: false,
             failure: None,
             positions: [(0, position); 2],
             random: 1,
@@ -202,6 +205,7 @@ impl MagneticEncoder {
     /// The level of a line that it would give this.
     fn has_line(&self, level: bool) -> bool {
         match self.failure {
+            _ if self.is_cut => false,
             Some(Failure::Zeros) => false,
             Some(Failure::Ones) => true,
             _ => level,

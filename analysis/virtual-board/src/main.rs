@@ -10,9 +10,9 @@
 //! | board | bytes | | world | bytes |
 //! |---|---|---|---|---|
 //! | 1 | 1 | | counts that the encoder turned by | 4 |
-//! | code of the DAC, 65535 for none | 2 | | length of what follows | 2 |
-//! | 1: the amplifier is on | 1 | | bytes for the serial port | |
-//! | length of what follows | 2 | | | |
+//! | code of the DAC, 65535 for none | 2 | | 1: a magnetic encoder's transfers fail from now on | 1 |
+//! | 1: the amplifier is on | 1 | | length of what follows | 2 |
+//! | length of what follows | 2 | | bytes for the serial port | |
 //! | bytes that the serial port sent | | | | |
 //!
 //! With a bridge, the world gets the motor's torque at the end of each period of the modulation, so that the
@@ -23,6 +23,7 @@
 //! | 2 | 1 | | counts that the encoder turned by | 4 |
 //! | mean torque in N m, a double | 8 | | angle in rad, a double | 8 |
 //! | length in s, a double | 8 | | speed in rad/s, a double | 8 |
+//! | | | | 1: the transfers fail from now on | 1 |
 //!
 //! The message of a sample then comes at the beginning of the servo's period. Its code is the servo's, which
 //! the current loop follows from there on; its fourth byte is 1 while the servo drives the gates, and 2 while
@@ -137,8 +138,7 @@ fn bridge_step(
     host: &Mutex<HostLink>,
 ) -> Result<Option<()>, Failure> {
     machine.run_samples(1)?;
-    let mut host = locked(host);
-    if let Some(end) = host.end() {
+    if let Some(end) = locked(host).end() {
         return Ok(Some(end?));
     }
     let is_on = machine.board().power_stage.timer.is_on();
@@ -147,10 +147,10 @@ fn bridge_step(
         _ if is_on => Drive::On,
         _ => Drive::Off,
     };
-    let turned = host.sample(memory.code(machine.core()), drive);
+    let turned = locked(host).sample(memory.code(machine.core()), drive);
     machine.board_mut().turn_encoder(turned);
-    carry_bytes(machine, &mut host);
-    Ok(host.end().transpose()?)
+    carry_bytes(machine, &mut locked(host));
+    Ok(locked(host).end().transpose()?)
 }
 
 fn carry_bytes(machine: &mut Machine, host: &mut HostLink) {
@@ -185,6 +185,10 @@ impl Device for DacPlant {
     fn sample(&mut self, code: Option<u16>, amplifier: bool) -> i32 {
         locked(&self.0).sample(code, if amplifier { Drive::On } else { Drive::Off })
     }
+
+    fn readings_fail(&self) -> bool {
+        locked(&self.0).readings_fail
+    }
 }
 
 /// The shaft of the bridge's motor, which the host simulates.
@@ -197,5 +201,9 @@ impl Device for Shaft {
 
     fn turn(&mut self, torque: f64, seconds: f64) -> Motion {
         locked(&self.0).turn(torque, seconds)
+    }
+
+    fn readings_fail(&self) -> bool {
+        locked(&self.0).readings_fail
     }
 }

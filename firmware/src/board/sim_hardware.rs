@@ -3,7 +3,7 @@
 use crate::boot::Startup;
 use crate::dac::DacCode;
 use crate::encoder::RawCount;
-use crate::fault::FaultRecord;
+use crate::fault::{Fault, FaultRecord};
 use crate::reset::ResetCause;
 use crate::servo_loop::Hardware;
 
@@ -15,6 +15,14 @@ pub trait SimIo {
     fn write(&mut self, code: DacCode);
     /// Switches the amplifier.
     fn amplifier(&mut self, _on: bool) {}
+    /// [`Hardware::periods_since_last`].
+    fn periods_since_last(&mut self) -> u32 {
+        1
+    }
+    /// [`Hardware::reading_fault`].
+    fn reading_fault(&mut self) -> Option<Fault> {
+        None
+    }
     /// Ticks after that in which it does not follow the code yet.
     fn start_up_ticks(&self) -> u32 {
         0
@@ -55,7 +63,11 @@ impl<L: SimIo> Hardware for SimHardware<L> {
     }
 
     fn periods_since_last(&mut self) -> u32 {
-        1
+        self.lines.periods_since_last()
+    }
+
+    fn reading_fault(&mut self) -> Option<Fault> {
+        self.lines.reading_fault()
     }
 
     fn time_in_period(&mut self) -> u32 {

@@ -5,7 +5,7 @@ use haptic_model::disturbance::Disturbance;
 use haptic_model::hand::HandTrajectory;
 use haptic_model::missed::Missed;
 use haptic_model::simulation::SimulationError;
-use haptic_model::simulation::device_in_hand::DeviceInHand;
+use haptic_model::simulation::device_in_hand::{DeviceInHand, ReadingOutcome};
 use haptic_servo::scene::{Latency, Scene, Timing};
 use haptic_servo::servo::Transducers;
 
@@ -13,9 +13,9 @@ use haptic_servo::servo::Transducers;
 pub trait PlantIo {
     /// The counter's content now; `None` at the end of a recording.
     fn count(&mut self) -> Option<i32>;
-    /// Whether the servo leaves the tick of this count out, because its reading fails.
-    fn is_left_out(&self) -> bool {
-        false
+    /// What has come of the reading of this count.
+    fn reading(&self) -> ReadingOutcome {
+        ReadingOutcome::Read
     }
     /// Outputs the code of this tick, which is held until that of the next tick.
     fn hold(&mut self, code: u16);
@@ -94,8 +94,8 @@ impl PlantIo for SimulatedDevice {
         Some(self.device.count())
     }
 
-    fn is_left_out(&self) -> bool {
-        self.device.is_left_out()
+    fn reading(&self) -> ReadingOutcome {
+        self.device.reading()
     }
 
     fn hold(&mut self, code: u16) {

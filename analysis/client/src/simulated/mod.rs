@@ -33,6 +33,7 @@ pub use self::device::{PlantIo, SimulatedDevice};
 pub use self::listener::Listener;
 use self::plant_hardware::PlantHardware;
 use crate::Address;
+pub use haptic_model::simulation::device_in_hand::ReadingOutcome;
 
 /// Timer counts in a period: a 170 MHz timer at 1 kHz.
 const TIMER_COUNTS: u32 = 170_000;
@@ -105,8 +106,8 @@ impl SimulatedBoard {
     }
 
     /// Boots a program of a scene file in a simulated hand, the file's if it has one, and listens there, with the
-    /// host of the file beside its servo, if it has one. The device has the file's friction and cogging. The sensor
-    /// and the motor that the file does not state are the defaults of a simulation.
+    /// host of the file beside its servo, if it has one. The device has the file's friction and cogging, and its
+    /// encoder readings that fail. The sensor and the motor that the file does not state are the defaults of a simulation.
     ///
     /// # Errors
     /// No board renders the scene, or the address cannot be listened on.
@@ -140,7 +141,7 @@ impl SimulatedBoard {
             .map_err(|reason| not_rendered(reason.step(), reason))?;
         let hand = file.demonstration().repeated_until(HAND_DURATION);
         let plant = SimulatedDevice::new(&file.scene, hand, &transducers)?;
-        let plant = Box::new(plant.with_disturbance(file.disturbance()));
+        let plant = Box::new(plant.with_disturbance(file.disturbance()).failing(file.dropped()));
         // A board's name is a constant.
         let name = &file.name[..file.name.floor_char_boundary(LONGEST_NAME)];
         let name = Box::leak(name.to_owned().into_boxed_str());
@@ -251,7 +252,9 @@ where
                 break;
             }
             next += period;
-            servo_loop.run(&mut board, &mut inbox, &mut frames);
+            if board.lines.begin() {
+                servo_loop.run(&mut board, &mut inbox, &mut frames);
+            }
         }
         // A client that does not read keeps the rest in the session, which drops ticks.
         if outgoing.is_empty() {

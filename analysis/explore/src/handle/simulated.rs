@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use haptic_model::controller::{Controller, Tick};
 use haptic_model::device::{Energy, HandSetpoint};
 use haptic_model::file::SceneFile;
-use haptic_model::simulation::device_in_hand::DeviceInHand;
+use haptic_model::simulation::device_in_hand::{DeviceInHand, ReadingOutcome};
 use haptic_servo::dac::DacCode;
 use haptic_servo::environment::Wall;
 use haptic_servo::scene::{EncoderReading, Scene};
@@ -153,10 +153,8 @@ impl Simulated {
         let mut device = DeviceInHand::new(&moved, hand, &transducers)
             .map_err(|error| error.to_string())?
             .with_disturbance(file.disturbance());
-        if let Some(simulation) =
-            file.simulation.as_ref().filter(|_| settings.counts_per_turn.is_none())
-        {
-            device = device.failing(simulation.dropped);
+        if settings.counts_per_turn.is_none() {
+            device = device.failing(file.dropped());
         }
         if let Some(before) = before {
             let (old, new) = (&before.scene, &file.scene);
@@ -295,7 +293,7 @@ impl Simulated {
             self.rendered.servo = Box::new(Unchecked::off(&self.transducers));
             (self.hosted, self.fault) = (None, Some(fault));
         }
-        let held = self.last.filter(|_| self.device.is_left_out() && self.fault.is_none());
+        let held = self.last.filter(|_| self.device.reading() == ReadingOutcome::LeftOut);
         let mut tick = match (held, &mut self.hosted) {
             (Some(held), _) => Tick { is_left_out: true, ..held },
             (None, Some(hosted)) => hosted.servo.tick(raw),

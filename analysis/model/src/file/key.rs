@@ -527,9 +527,11 @@ keys! {
     /// Ticks in which the servo does not run: every so many, or by chance.
     MISSED = other("simulation.missed", "", TABLE),
         Optional("none is missed"), "{ fraction = 0.01, seed = 1 }";
-    /// Number of ticks of which the last is missed.
+    /// Number of ticks of which the last is missed, or the last `length`.
     MISSED_EVERY = other("simulation.missed.every", "ticks", whole(2, 1_000_000)),
         Optional("`simulation.missed.fraction` decides"), "2";
+    /// Number of ticks that are missed in a row, less than `every`.
+    MISSED_LENGTH = other("simulation.missed.length", "ticks", whole(1, 1_000_000)), Default(1.0), "1";
     /// Probability that a tick is missed.
     MISSED_FRACTION = other("simulation.missed.fraction", "", FRACTION),
         Optional("`simulation.missed.every` decides"), "0.01";
@@ -540,9 +542,12 @@ keys! {
     /// simulation with the fault `encoder-reading`.
     FAILED = other("simulation.dropped", "", TABLE),
         Optional("no reading fails"), "{ fraction = 0.01, seed = 1 }";
-    /// Number of readings of which the last fails.
+    /// Number of readings of which the last fails, or the last `length`.
     FAILED_EVERY = other("simulation.dropped.every", "ticks", whole(2, 1_000_000)),
         Optional("`simulation.dropped.fraction` decides"), "7";
+    /// Number of readings that fail in a row, less than `every`. As many as `encoder.dropped`, of one more, are the worst
+    /// that the certificate allows.
+    FAILED_LENGTH = other("simulation.dropped.length", "ticks", whole(1, 1_000_000)), Default(1.0), "1";
     /// Probability that a reading fails.
     FAILED_FRACTION = other("simulation.dropped.fraction", "", FRACTION),
         Optional("`simulation.dropped.every` decides"), "0.01";
@@ -639,6 +644,11 @@ pub const BESIDE: &[&Key] = &[&DRAG];
 /// product of their values. A file that is written has the other key.
 pub const RECIPROCALS: [(&Key, &Key, f64); 2] =
     [(&RATE, &PERIOD, 1.0), (&COUNTS_PER_TURN, &ENCODER_STEP, TAU)];
+
+/// The keys of ticks that are missed, and of readings that fail: every so many, how many of them, by chance, its seed.
+pub const OF_MISSED: [&Key; 4] = [&MISSED_EVERY, &MISSED_LENGTH, &MISSED_FRACTION, &MISSED_SEED];
+/// See there.
+pub const OF_FAILED: [&Key; 4] = [&FAILED_EVERY, &FAILED_LENGTH, &FAILED_FRACTION, &FAILED_SEED];
 
 /// The keys of a device file, which are those of a scene file. Its name is not that of the scene.
 pub const OF_DEVICE_FILE: [&Key; 7] =

@@ -26,6 +26,7 @@ use crate::chain::Chain;
 use crate::device::Hand;
 use crate::disturbance::{Cogging, Disturbance};
 use crate::hand::HandTrajectory;
+use crate::missed::Missed;
 
 /// The contents of a scene file.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,6 +69,11 @@ impl SceneFile {
             friction: self.friction.unwrap_or(0.0),
             cogging: self.cogging.unwrap_or_default(),
         }
+    }
+
+    /// Readings of its encoder that fail in a simulation.
+    pub fn dropped(&self) -> Missed {
+        self.simulation.as_ref().map_or(Missed::None, |simulation| simulation.dropped)
     }
 
     /// The trajectory that demonstrates its environment, in its hand if it has one.

@@ -72,15 +72,12 @@ pub fn simulation(mut section: Section<'_>, period: f64, friction: f64) -> Read<
     let host = section.list(&key::HOST_TORQUES);
     let own_friction = section.optional(&key::FRICTION);
     let latency = latency(&mut section, period);
-    let [missed, dropped] = [
-        (&key::MISSED, [&key::MISSED_EVERY, &key::MISSED_FRACTION, &key::MISSED_SEED]),
-        (&key::FAILED, [&key::FAILED_EVERY, &key::FAILED_FRACTION, &key::FAILED_SEED]),
-    ]
-    .map(|(key, keys)| {
-        section
-            .table(key)
-            .and_then(|table| table.map_or(Ok(Missed::None), |it| missed_of(it, keys)))
-    });
+    let [missed, dropped] =
+        [(&key::MISSED, key::OF_MISSED), (&key::FAILED, key::OF_FAILED)].map(|(key, keys)| {
+            section
+                .table(key)
+                .and_then(|table| table.map_or(Ok(Missed::None), |it| missed_of(it, keys)))
+        });
     section.finish();
     Ok(Simulation {
         samples: samples?,
@@ -108,26 +105,37 @@ fn latency(section: &mut Section<'_>, period: f64) -> Read<f64> {
     Err(section.conflict(&key::LATENCY, reason))
 }
 
-/// Reads a table with these keys: every so many, a fraction, and the seed of its chance.
-fn missed_of(mut table: Section<'_>, keys: [&'static Key; 3]) -> Read<Missed> {
-    let [every, fraction, seed] = keys.map(|key| table.optional(key));
-    let (every, fraction, seed) = match (every, fraction, seed) {
+/// Reads a table with these keys: every so many and how many of them, a fraction and the seed of its chance.
+fn missed_of(mut table: Section<'_>, keys: [&'static Key; 4]) -> Read<Missed> {
+    let [every, length, fraction, seed] = keys.map(|key| table.optional(key));
+    let (every, length, fraction, seed) = match (every, length, fraction, seed) {
         // Before `finish`, so that a misspelt `fraction` is reported with the intended key.
-        (Ok(None), Ok(None), Ok(_)) => {
-            let reported = table.missing(keys[1]);
+        (Ok(None), Ok(_), Ok(None), Ok(_)) => {
+            let reported = table.missing(keys[2]);
             table.finish();
             return Err(reported);
         }
-        (every, fraction, seed) => {
+        (every, length, fraction, seed) => {
             table.finish();
-            (every?, fraction?, seed?)
+            (every?, length?, fraction?, seed?)
         }
     };
     match (every, fraction) {
-        (Some(every), None) if seed.is_none() => Ok(Missed::Every(every as u32)),
+        (Some(every), None) if seed.is_none() => {
+            let (count, length) = (every as u32, length.unwrap_or(1.0) as u32);
+            if length < count {
+                return Ok(Missed::Every { count, length });
+            }
+            let reason = format!("is not less than `{}` = {count}", keys[0].path);
+            Err(table.conflict(keys[1], reason))
+        }
         (Some(_), _) => {
             let reason = "cannot stand beside `fraction` or `seed`: set one or the other";
             Err(table.conflict(keys[0], reason))
+        }
+        (None, _) if length.is_some() => {
+            let reason = format!("stands without `{}`", keys[0].path);
+            Err(table.conflict(keys[1], reason))
         }
         (None, fraction) => Ok(Missed::Random {
             fraction: fraction.unwrap_or(0.0),

@@ -362,7 +362,7 @@ mod tests {
             "torque_sine = { amplitude = 0.1, omega = 60, phase = 0.2 }",
             "torque_sine = { amplitude = 0.1, omega = 60, held = true }",
             "torque_pulses = { amplitude = -0.1, every = 50, length = 7 }",
-            "missed = { every = 7 }",
+            "missed = { every = 7, length = 3 }",
             "dropped = { fraction = 0.1, seed = 3 }",
             "missed = { fraction = 0.1, seed = 3 }\nlatency = 0.0002\nfriction = 0.01",
             "position = 0.1\nvelocity = -2",

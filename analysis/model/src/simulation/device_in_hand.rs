@@ -14,6 +14,20 @@ use crate::device::{Energy, Hand, HandSetpoint, Motion, SimulatedEncoder};
 use crate::disturbance::Disturbance;
 use crate::missed::Missed;
 
+/// What has come of a reading of the encoder.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ReadingOutcome {
+    /// An angle.
+    #[default]
+    Read,
+    /// It has failed, and the one before takes its place.
+    Replaced,
+    /// It has failed, and the servo leaves its tick out.
+    LeftOut,
+    /// More in a row have failed than so many, which the scene allows.
+    Fault(u16),
+}
+
 /// A device that a hand holds or not. A code acts after the output delay of the scene, and amplifier and sensor
 /// have the lags of the scene: the middle of each range, without jitter.
 #[derive(Clone, Debug)]
@@ -26,11 +40,12 @@ pub struct DeviceInHand {
     encoder: SimulatedEncoder,
     /// The last reading that did not fail, in counts.
     counted: i32,
-    /// Whether a tick whose reading fails is left out, and whether the last one was.
+    /// What has come of the last reading.
+    outcome: ReadingOutcome,
+    /// Whether a tick whose reading fails is left out.
     leaves_out: bool,
-    is_left_out: bool,
     /// Readings in a row that have failed, and how many may.
-    failed: u32,
+    failed: u16,
     may_fail: u16,
     torque_per_code: f64,
     energy: Energy,
@@ -57,8 +72,8 @@ impl DeviceInHand {
             reading: Reading::new(scene.latency.encoder, Some(TAU / transducers.counts_per_turn)),
             encoder: SimulatedEncoder::new(transducers.counts_per_turn),
             counted: 0,
+            outcome: ReadingOutcome::Read,
             leaves_out: scene.latency.encoder.leaves_out(period, worst_period),
-            is_left_out: false,
             failed: 0,
             may_fail: scene.latency.encoder.dropped,
             torque_per_code: full_scale / f64::from(DacCode::CODES_TO_FULL_SCALE),
@@ -99,28 +114,31 @@ impl DeviceInHand {
     /// The counter's content, as the encoder reads it now; that of the last tick if the reading fails.
     pub fn count(&mut self) -> i32 {
         let fails = self.reading.fails();
-        self.failed = if fails { self.failed + 1 } else { 0 };
+        self.failed = if fails { self.failed.saturating_add(1) } else { 0 };
         if !fails {
             self.counted = self.encoder.read(self.reading.angle(self.state.measured()));
         }
-        self.is_left_out = fails && self.leaves_out;
+        self.outcome = match fails {
+            false => ReadingOutcome::Read,
+            true if self.failed > self.may_fail => ReadingOutcome::Fault(self.may_fail),
+            true if self.leaves_out => ReadingOutcome::LeftOut,
+            true => ReadingOutcome::Replaced,
+        };
         self.counted
     }
 
-    /// Whether the servo leaves the tick of this count out, because its reading fails.
-    pub fn is_left_out(&self) -> bool {
-        self.is_left_out
+    /// What has come of the reading of the last count.
+    pub fn reading(&self) -> ReadingOutcome {
+        self.outcome
     }
 
     /// The fault of a servo after the last count, if more readings in a row have failed than its scene allows.
     pub fn fault(&self) -> Option<String> {
-        let allowed = self.may_fail;
-        (self.failed > u32::from(allowed)).then(|| {
-            format!(
-                "the fault encoder-reading: more readings of the encoder in a row have failed than \
-                 `encoder.dropped` = {allowed}"
-            )
-        })
+        let ReadingOutcome::Fault(allowed) = self.outcome else { return None };
+        Some(format!(
+            "the fault encoder-reading: more readings of the encoder in a row have failed than \
+             `encoder.dropped` = {allowed}"
+        ))
     }
 
     /// The present motion of the device.

@@ -102,6 +102,11 @@ fn chunks_are_one_motion() {
     }
 }
 
+/// The last of so many ticks.
+const fn every(count: u32) -> Missed {
+    Missed::Every { count, length: 1 }
+}
+
 /// Mean square over the last quarter, over that of the first.
 fn decay(experiment: &Experiment) -> f64 {
     let motion = simulate(experiment, Integration::default()).unwrap();
@@ -122,8 +127,8 @@ fn missed_ticks_need_the_longest_time_between_updates() {
     assert!(decay(&spring(950.0)) < 0.5);
     let missed = Missed::Random { fraction: 0.1, seed: 1 };
     assert!(decay(&Experiment { missed, ..spring(950.0) }) > 2.0);
-    assert!(decay(&Experiment { missed: Missed::Every(2), ..spring(475.0) }) < 0.5);
-    assert!(decay(&Experiment { missed: Missed::Every(2), ..spring(525.0) }) > 2.0);
+    assert!(decay(&Experiment { missed: every(2), ..spring(475.0) }) < 0.5);
+    assert!(decay(&Experiment { missed: every(2), ..spring(525.0) }) > 2.0);
 }
 
 /// A law of one position holds its torque with its reading; one with a damper does so only where its tick is left
@@ -138,7 +143,7 @@ fn a_reading_that_fails_is_the_one_before_or_a_missed_tick() {
         let experiment = Experiment { missed, dropped, ..moving(&scene, 500, 1e-3) };
         simulate(&experiment, Integration::default()).unwrap()
     };
-    let (every, none) = (Missed::Every(3), Missed::None);
+    let (every, none) = (every(3), Missed::None);
     let (spring, damped) = (Wall::spring(100.0, 0), Wall::damped(100.0, 0.2, 0));
     let twice = Some(2.0 * scene(spring.alone()).timing.period);
     for (wall, worst, equal) in [(spring, None, true), (damped, None, false), (damped, twice, true)]
@@ -287,7 +292,7 @@ fn torque_is_limited_before_the_coupling_is_solved() {
 #[test]
 fn the_record_says_which_ticks_were_missed_and_where_counts_ended() {
     let scene = paper(Wall::damped(22.0, 0.0, 0).alone());
-    let missed = Experiment { missed: Missed::Every(3), ..moving(&scene, 6, 0.01) };
+    let missed = Experiment { missed: every(3), ..moving(&scene, 6, 0.01) };
     let motion = simulate(&missed, Integration::default()).unwrap();
     let (ran, not) = (TickStatus::UNLIMITED, TickStatus::Missed);
     assert_eq!(motion.limit, [ran, ran, not, ran, ran, not]);

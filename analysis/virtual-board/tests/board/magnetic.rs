@@ -278,7 +278,7 @@ fn failing_readings_give_the_codes_of_a_simulation_s() {
     let mut bench = boot(HandHeldDevice::with(device), 0);
     let armed = bench.armed();
     const SAMPLES: usize = 1500;
-    let fails: Vec<_> = Missed::Every(3).ticks().take(SAMPLES).collect();
+    let fails: Vec<_> = Missed::Every { count: 3, length: 1 }.ticks().take(SAMPLES).collect();
     // The chip is selected at the beginning of the sample that runs next, which has its count already.
     let first = bench.pins().samples.len() - armed - 1;
     for fail in &fails {

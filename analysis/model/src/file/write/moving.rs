@@ -26,7 +26,9 @@ pub fn simulation(lines: &mut Vec<String>, simulation: &Simulation) {
     lines.extend([("missed", missed), ("dropped", dropped)].into_iter().filter_map(
         |(name, law)| match law {
             Missed::None => None,
-            Missed::Every(every) => Some(format!("{name} = {{ every = {every} }}")),
+            Missed::Every { count, length } => {
+                Some(format!("{name} = {{ every = {count}, length = {length} }}"))
+            }
             Missed::Random { fraction, seed } => {
                 Some(format!("{name} = {{ fraction = {fraction:?}, seed = {seed} }}"))
             }
