@@ -192,7 +192,8 @@ struct Instructions {
     interrupt_max: u64,
 }
 
-/// Runs a scene and prints the result. The status is negative if a code of the board differs from the host's.
+/// Runs a scene and prints the result. The status is negative if a board rejects the scene, though it is certified
+/// alone, or if a code of the board differs from the host's.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let mut setup = setup(arguments)?;
     let period = setup.scene.timing.period;
@@ -227,7 +228,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     };
     bar.finish_and_clear();
     print(arguments, &setup, &outcome, gaps)?;
-    Ok(CommandStatus::of(outcome.run.difference.is_none()))
+    Ok(CommandStatus::of(setup.report.passes() && outcome.run.difference.is_none()))
 }
 
 /// As many ticks as a hand's trajectory takes, and as a program's demonstration has at least; a run keeps all.
