@@ -2,7 +2,7 @@
 
 use haptic_model::file::SceneFile;
 use haptic_model::remedy_change::{RemedyChange, remedy_changes};
-use haptic_model::verdict::{self, VerdictReport, judge_file};
+use haptic_model::verdict::{VerdictReport, judge_file, judge_file_without_remedies};
 use haptic_model::verdict_text::{details, rows};
 use haptic_servo::number::Format;
 use serde::Serialize;
@@ -39,9 +39,7 @@ pub fn judge(text: &str, _: &mut Vec<f64>) -> PageResult {
 
 /// The same without remedies, which take long if times are ranges.
 pub fn judge_without_remedies(text: &str, _: &mut Vec<f64>) -> PageResult {
-    judged(text, |file| {
-        verdict::judge_without_remedies(&file.name, &file.scene, &file.steps()).with_facts_of(file)
-    })
+    judged(text, judge_file_without_remedies)
 }
 
 fn judged(text: &str, report: impl FnOnce(&SceneFile) -> VerdictReport) -> PageResult {

@@ -15,6 +15,7 @@ use serde::{Serialize, Serializer};
 
 use crate::beside_host;
 use crate::felt;
+use crate::file::bridge::MotorOnBridge;
 use crate::file::{self, SceneFile};
 use crate::line_search::minimizing_angle;
 use crate::on_board;
@@ -221,10 +222,18 @@ pub fn judge_in(name: &str, scene: &Scene, format: Format, steps: &Resolution) -
 
 /// Judges the scene of a file as a number format rounds its coefficients, and the supply that the file states.
 pub fn judge_file(file: &SceneFile, format: Format) -> VerdictReport {
-    judge_in(&file.name, &file.scene, format, &file.steps()).with_facts_of(file)
+    let bridge = file.own_bridge();
+    judge_in(&file.name, &file.scene, format, &file.steps_on(&bridge)).with_facts_of(file, bridge)
 }
 
-/// The same without the search for remedies, which takes many times as long where times are known to lie in
+/// The same as the file is written, [without remedies](judge_without_remedies).
+pub fn judge_file_without_remedies(file: &SceneFile) -> VerdictReport {
+    let bridge = file.own_bridge();
+    let report = judge_without_remedies(&file.name, &file.scene, &file.steps_on(&bridge));
+    report.with_facts_of(file, bridge)
+}
+
+/// A scene as it was written, without the search for remedies, which takes many times as long where times are known to lie in
 /// ranges.
 pub fn judge_without_remedies(name: &str, scene: &Scene, steps: &Resolution) -> VerdictReport {
     let assessment = assess_in(scene, Format::F64);
@@ -383,15 +392,18 @@ fn of_rejection(
 }
 
 impl VerdictReport {
-    /// With the answer for the supply that the file states, if it states one, and warnings about numbers that no
-    /// device has.
-    #[must_use]
-    pub fn with_facts_of(mut self, file: &SceneFile) -> Self {
+    /// With the answers for the motor, on this bridge, and for the supply that the file states, if it states them, and
+    /// warnings about numbers that no device has.
+    fn with_facts_of(
+        mut self,
+        file: &SceneFile,
+        bridge: Result<Option<MotorOnBridge>, String>,
+    ) -> Self {
         self.warnings.extend(file::warnings(file));
         if let Some(host) = &file.host {
             self.add_host(file, host);
         }
-        if let Err(why) = file.own_bridge() {
+        if let Err(why) = bridge {
             self.refuse_motor(why);
         }
         self.supply = regeneration::judge(file);

@@ -3,7 +3,7 @@
 use haptic_model::controller::Controller;
 use haptic_model::file::SceneFile;
 use haptic_model::host::{HostEnergy, HostSender, HostedServo, HostileHost, unlimited};
-use haptic_model::verdict::{Verdict, judge_without_remedies};
+use haptic_model::verdict::{Verdict, judge_file_without_remedies};
 use haptic_servo::host::HostTorque;
 use haptic_servo::number::Format;
 use haptic_servo::servo::{OutputTiming, Transducers};
@@ -48,8 +48,7 @@ impl Hosted {
     ) -> Result<Self, String> {
         let law = law.parse()?;
         let budget = file.host.ok_or("the scene has no table `host` with a budget")?;
-        let report = judge_without_remedies(&file.name, &file.scene, &file.steps());
-        let report = report.with_facts_of(file);
+        let report = judge_file_without_remedies(file);
         if report.verdict != Verdict::Certified {
             return Err(report.message);
         }

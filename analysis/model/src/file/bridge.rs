@@ -10,7 +10,7 @@ use haptic_servo::scene::TimeRange;
 use haptic_servo::servo::Transducers;
 use haptic_servo::text::RoundUp3;
 
-use super::key;
+use super::key::{self, Presence};
 use super::motor::FileMotor;
 use super::scene::SceneFile;
 use super::supply::FileSupply;
@@ -32,9 +32,14 @@ impl SceneFile {
     /// The file's resolution, for the certificate's assumptions: that of a motor without a current loop is not
     /// known.
     pub fn steps(&self) -> Resolution {
+        self.steps_on(&self.own_bridge())
+    }
+
+    /// The same with its [bridge](Self::own_bridge), which takes a design of its current loop.
+    pub fn steps_on(&self, bridge: &Result<Option<MotorOnBridge>, String>) -> Resolution {
         let Self { encoder_step: encoder, full_scale, friction, .. } = *self;
         let steps = Resolution { encoder, full_scale, friction, ..Resolution::default() };
-        match self.own_bridge() {
+        match bridge {
             Ok(None) => steps,
             Ok(Some(bridge)) => steps.with_current_loop(&bridge.current_loop.resolution()),
             Err(_) => Resolution { current: Some(f64::INFINITY), ..steps },
@@ -87,15 +92,22 @@ impl SceneFile {
         // TIM4, or a chip.
         let counter = self.chip.map_or(CounterWidth::Bits16, |chip| chip.width);
         let transducers = Transducers { counter, ..*transducers };
+        let speed = transducers.largest_speed;
+        let refused = |error: &dyn ToString| match key::LARGEST_SPEED.presence {
+            Presence::Default(default) if speed == default => format!(
+                "{}; `{}` is {default} rad/s, as it is where the key is missing: state it",
+                error.to_string(),
+                key::LARGEST_SPEED.path
+            ),
+            _ => error.to_string(),
+        };
         let mut current_loop = CurrentLoop::design(&drive, &B_G431B_ESC1, &transducers, period)
-            .map_err(|error| error.to_string())?;
+            .map_err(|error| refused(&error))?;
         if index_offset.is_some() {
             let indexed = current_loop.indexed(EncoderIndex { offset: index_offset });
             current_loop = indexed.map_err(|error| error.to_string())?;
         }
-        current_loop
-            .check_age(latency, period, transducers.largest_speed)
-            .map_err(|error| error.to_string())?;
+        current_loop.check_age(latency, period, speed).map_err(|error| refused(&error))?;
         let response = current_loop.response();
         let phase = latency.stated_delay() - response.delay;
         let is_latched = phase.abs() <= SAME * response.delay;

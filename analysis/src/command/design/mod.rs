@@ -173,7 +173,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     }
 }
 
-/// The answer of a design on a board. Where nothing passes on one, the reason comes with it; if no board has
+/// The answer of a design on a board. None certifies with a motor that the board's own bridge does not drive. Where nothing passes on one, the reason comes with it; if no board has
 /// the times of such a scene, or the scene states no limits of a board, the answer is that of the certificate
 /// alone.
 fn on_a_board(
@@ -181,6 +181,10 @@ fn on_a_board(
     design: impl Fn(&Terms) -> DesignLimit<Vec<SceneFile>>,
 ) -> (DesignLimit<Vec<SceneFile>>, Option<String>) {
     let found = design(terms);
+    let files = found.value_and_result().1.map_or([].as_slice(), Vec::as_slice);
+    if let Some(why) = files.iter().find_map(|file| file.own_bridge().err()) {
+        return (DesignLimit::Nothing, Some(format!("no board renders it: {why}")));
+    }
     let is_zero = matches!(found, DesignLimit::Limit(0.0, _));
     if !(is_zero || matches!(found, DesignLimit::Nothing)) {
         return (found, None);
