@@ -13,6 +13,11 @@ use crate::quantity::significant;
 const COARSEST_STEP: f64 = 0.15;
 /// The most counts in a turn: those of the finest encoders, of 32 bits.
 const MOST_COUNTS: f64 = 4_294_967_296.0;
+/// The most noise of an encoder in counts, and the least that shows.
+const MOST_NOISE: f64 = 100.0;
+const LEAST_NOISE: f64 = 0.1;
+/// The largest slope of an encoder's error: that of a magnet far beside its chip's middle.
+const STEEPEST_ERROR: f64 = 0.3;
 /// The longest period in s at which a hand feels anything but steps.
 const LONGEST_PERIOD: f64 = 0.1;
 /// The largest inertia in kg m^2 and friction in N m of a device that a hand moves, and the largest torque in
@@ -29,9 +34,11 @@ const FARTHEST_FACE: f64 = 3.0 * TAU;
 
 /// A sentence for each implausible number of a file.
 pub fn warnings(file: &SceneFile) -> Vec<String> {
-    let doubts =
-        [step, linearity, alignment, period, inertia, damping, friction, cogging, full_scale, face]
-            .map(|doubt| doubt(file));
+    let doubts = [
+        step, noise, linearity, alignment, period, inertia, damping, friction, cogging, full_scale,
+        face,
+    ]
+    .map(|doubt| doubt(file));
     doubts.into_iter().flatten().collect()
 }
 
@@ -39,7 +46,8 @@ pub fn warnings(file: &SceneFile) -> Vec<String> {
 fn doubt(key: &Key, value: f64, why: &str, meant: f64, of: &str) -> String {
     let [value, meant] = [significant(value, 6), significant(meant, 3)];
     let Key { path, unit, .. } = key;
-    format!("`{path}` = {value} {unit} {why}: did you mean {meant}, of {value} {of}?")
+    let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+    format!("`{path}` = {value}{unit} {why}: did you mean {meant}, of {value} {of}?")
 }
 
 fn step(file: &SceneFile) -> Option<String> {
@@ -64,8 +72,37 @@ fn step(file: &SceneFile) -> Option<String> {
     ))
 }
 
+/// The noise is in counts, and data sheets have it as an angle.
+fn noise(file: &SceneFile) -> Option<String> {
+    let noise = file.scene.latency.encoder.noise;
+    let (why, of, radians) = match noise {
+        _ if noise > MOST_NOISE => (
+            format!("is above {MOST_NOISE}, and no encoder is as noisy"),
+            "arcseconds",
+            noise.to_radians() / 3600.0,
+        ),
+        _ if noise > 0.0 && noise < LEAST_NOISE => {
+            (format!("is below {LEAST_NOISE}, and counts hide it"), "degrees", noise.to_radians())
+        }
+        _ => return None,
+    };
+    Some(doubt(&key::NOISE, noise, &why, radians / file.encoder_step?, of))
+}
+
 /// A chip has an error over the angle, whether it is stated or not.
 fn linearity(file: &SceneFile) -> Option<String> {
+    let slope = file.scene.latency.encoder.linearity;
+    if slope > STEEPEST_ERROR {
+        let why = format!("is above {STEEPEST_ERROR}, and no encoder is as wrong");
+        // Twice that of an error of one period in a turn.
+        return Some(doubt(
+            &key::LINEARITY,
+            slope,
+            &why,
+            2.0 * slope.to_radians(),
+            "degrees of INL",
+        ));
+    }
     let chip = file.chip.filter(|_| file.scene.latency.encoder.linearity == 0.0)?;
     Some(format!(
         "`{}` is not stated, and the certificate takes the readings of {} for free of any error over the angle",
