@@ -75,6 +75,8 @@ pub struct HeldDevice {
 /// What happens in some part of a period.
 #[derive(Clone, Debug)]
 pub struct Step {
+    /// Its part of a period.
+    pub part: f64,
     /// By columns, which are added up.
     transition: Matrix,
     /// Integral of the device's velocity squared.
@@ -167,12 +169,13 @@ impl HeldDevice {
     pub fn step(&self, part: f64) -> Step {
         if self.force == TORQUE {
             let (transition, [motion]) = integrate(&self.rates, [Self::device()], part);
-            return Step { transition: transposed(&transition), motion, work: None, hand: None };
+            let transition = transposed(&transition);
+            return Step { part, transition, motion, work: None, hand: None };
         }
         let both = [Self::device(), self.power()];
         let (transition, [motion, work]) = integrate(&self.rates, both, part);
         let work = Some(Box::new(work));
-        Step { transition: transposed(&transition), motion, work, hand: None }
+        Step { part, transition: transposed(&transition), motion, work, hand: None }
     }
 
     /// A part of a period with what the hand takes.

@@ -175,12 +175,14 @@ pub fn read(latency: Latency, period: f64, coupling: Coupling) -> Latency {
         let most = least + if rng.random_bool(0.5) { log_uniform(rng, 1e-3, 0.3) } else { 0.0 };
         reading.age = TimeRange::between(least * period, most * period);
     }
+    if rng.random_bool(0.4) {
+        reading.noise = log_uniform(rng, 0.5, 300.0);
+    }
     if coupling == Coupling::Matched {
-        // No more than an age has a proof there.
+        // No more than an age and noise has a proof there.
         return latency.read_by(kept(reading));
     }
-    // The filter of an encoder is behind its error, and the simulated one before.
-    if latency.sensor_lag.is_zero() && rng.random_bool(0.7) {
+    if rng.random_bool(0.7) {
         reading.linearity = log_uniform(rng, 0.01, 0.4);
     }
     if rng.random_bool(0.2) {

@@ -79,6 +79,8 @@ pub struct NormalizedScene {
     pub in_time: f64,
     /// Largest slope of the encoder's error over the angle.
     pub linearity: f64,
+    /// Peak of the encoder's noise in rad.
+    pub noise: f64,
     /// Readings in a row that may be dropped, each of which is then the one before.
     pub dropped: u16,
 }
@@ -114,7 +116,9 @@ impl NormalizedScene {
         let declared = actual.passivity.unwrap_or(declared(scene));
         let unit = declared / scene.timing.period;
         let steps = Resolution::of(transducers, None);
-        let step = TAU / transducers.counts_per_turn;
+        let count = TAU / transducers.counts_per_turn;
+        // With its noise.
+        let step = count * scene.latency.encoder.steps();
         // A rigid device has no more passivity than damping, whatever was declared.
         let has = declared.min(scene.device.damping);
         let (mut bound, mut soft, mut face) = (0.0_f64, 0.0_f64, 0.0_f64);
@@ -199,7 +203,7 @@ impl NormalizedScene {
             numbers: numbers / unit,
             counts_per_radian: transducers.counts_per_turn / TAU,
             // So that the counter does not wrap unseen in the longest gap that a run has.
-            fastest: 0.9 * half * step / 8.0,
+            fastest: 0.9 * half * count / 8.0,
             size: drawn.size,
             reach: drawn.reach,
             angles: if timing.jitters[0] > 0.0 {
@@ -216,6 +220,7 @@ impl NormalizedScene {
             injection: drawn.rendering.injection.unwrap_or(0.0),
             sets,
             linearity: latency.encoder.linearity,
+            noise: latency.encoder.noise * count,
             dropped: latency.encoder.dropped,
         })
     }
@@ -255,6 +260,11 @@ impl NormalizedScene {
             profile.torque.abs() * away + steepest * away * away
         };
         wall + environment.profile().map_or(0.0, of)
+    }
+
+    /// Whether the error of the encoder's angle comes through a filter.
+    pub fn filters_errors(&self) -> bool {
+        self.linearity > 0.0 && self.timing.sensor.most > 0.0
     }
 
     /// A place for the board's zero, in rad.

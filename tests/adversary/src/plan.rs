@@ -179,25 +179,58 @@ pub struct Readings {
     pub waves: [f64; 3],
     /// The readings that are dropped: where this is above zero.
     pub dropped: Option<Signs>,
+    /// Peak of its noise in rad, and the signs of that.
+    pub noise: (f64, Option<Signs>),
 }
+
+/// Places of a rule of Gauss in a step, and their weights.
+const NODES: [[f64; 2]; 4] = [
+    [0.069_431_844_202_973_71, 0.173_927_422_568_726_93],
+    [0.330_009_478_207_571_87, 0.326_072_577_431_273_07],
+    [0.669_990_521_792_428_1, 0.326_072_577_431_273_07],
+    [0.930_568_155_797_026_3, 0.173_927_422_568_726_93],
+];
 
 impl Readings {
     fn draw(rng: &mut impl Rng, normalized: &NormalizedScene) -> Self {
         let mut readings = Self::default();
         if normalized.linearity > 0.0 {
-            let count = f64::from([1, 1, 2, 7, 50, 400][rng.random_range(0..6)]);
+            // A step through a filter is a small part of a wave.
+            let counts = if normalized.filters_errors() { 4 } else { 6 };
+            let count = f64::from([1, 1, 2, 7, 50, 400][rng.random_range(0..counts)]);
             readings.waves = [count, normalized.linearity / count, rng.random_range(0.0..TAU)];
         }
         if normalized.dropped > 0 && rng.random_bool(0.8) {
             readings.dropped = Some(Signs::draw(rng));
         }
+        if normalized.noise > 0.0 && rng.random_bool(0.9) {
+            readings.noise = (normalized.noise, Some(Signs::draw(rng)));
+        }
         readings
     }
 
-    /// The angle that it reads from an angle, in rad.
-    pub fn of(&self, angle: f64) -> f64 {
+    /// The error of the angle that it reads from an angle, in rad.
+    pub fn error(&self, angle: f64) -> f64 {
         let [count, amplitude, phase] = self.waves;
-        angle + amplitude * (count * angle + phase).sin()
+        amplitude * (count * angle + phase).sin()
+    }
+
+    /// The error behind a filter of this time constant in periods, which was `error`, after so much of a period from one
+    /// position and velocity to another, with a cubic path in between.
+    pub fn filtered(&self, error: f64, [from, to]: [[f64; 2]; 2], part: f64, lag: f64) -> f64 {
+        let left = (-part / lag).exp();
+        let (mut sum, mut weights) = (0.0, 0.0);
+        for [at, weight] in NODES {
+            let (back, weight) = (1.0 - at, weight * ((at - 1.0) * part / lag).exp());
+            let [near, far] = [(from, at, part), (to, back, -part)].map(|([x, v], at, part)| {
+                let rest = (1.0 - at) * (1.0 - at);
+                x * (1.0 + 2.0 * at) * rest + v * part * at * rest
+            });
+            sum += weight * self.error(near + far);
+            weights += weight;
+        }
+        // What rests behind an error is that error.
+        error * left + sum / weights * (1.0 - left)
     }
 }
 
@@ -252,8 +285,26 @@ const LIGHTEST: f64 = 1e-3;
 const HEAVIEST: f64 = 3e3;
 const STIFFEST: f64 = 1e2;
 
-fn bounded(mut hand: Hand, segments: usize) -> Hand {
-    hand.segments.truncate(segments);
+/// Least inertia, and largest rates squared and rates in a period, of a hand in which an error is filtered.
+const SLOWLY: [f64; 3] = [0.1, 64.0, 10.0];
+
+fn bounded(mut hand: Hand, normalized: &NormalizedScene) -> Hand {
+    hand.segments.truncate(normalized.segments);
+    if normalized.filters_errors() {
+        let [lightest, stiffest, most] = SLOWLY;
+        let slow = |inertia: f64, stiffness: &mut f64, damping: &mut f64| {
+            *stiffness = stiffness.min(stiffest * inertia);
+            *damping = damping.min(most * inertia);
+        };
+        hand.inertia = hand.inertia.max(lightest);
+        slow(hand.inertia, &mut hand.stiffness, &mut hand.damping);
+        for segment in &mut hand.segments {
+            segment.inertia = segment.inertia.max(lightest);
+            let least = segment.inertia.min(hand.inertia);
+            slow(segment.inertia, &mut segment.stiffness, &mut segment.damping);
+            slow(least, &mut segment.link_stiffness, &mut segment.link_damping);
+        }
+    }
     hand.inertia = hand.inertia.clamp(LIGHTEST, HEAVIEST);
     hand.stiffness = hand.stiffness.min(STIFFEST);
     for segment in &mut hand.segments {
@@ -267,7 +318,7 @@ fn bounded(mut hand: Hand, segments: usize) -> Hand {
 impl Plan {
     /// A plan for a subject.
     pub fn draw(rng: &mut impl Rng, normalized: &NormalizedScene, periods: u32) -> Self {
-        let mut hand = bounded(Self::hand(rng, normalized), normalized.segments);
+        let mut hand = bounded(Self::hand(rng, normalized), normalized);
         // A limit cycle must deliver power: a damper in the hand absorbs it for ever.
         if hand.damping == 0.0 && rng.random_bool(0.7) {
             hand.damping = log_uniform(rng, 1e-5, 1e-2);
@@ -424,7 +475,7 @@ impl Plan {
         let mut pick = |share: f64| all || rng.random_bool(share);
         let (hand, start, pattern, requests) = (pick(0.7), pick(0.5), pick(0.15), pick(0.15));
         if hand {
-            plan.hand = bounded(plan.hand.varied(rng, spread), normalized.segments);
+            plan.hand = bounded(plan.hand.varied(rng, spread), normalized);
         }
         if start {
             let moved = plan.start[0];

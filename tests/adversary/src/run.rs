@@ -26,7 +26,7 @@ use haptic_servo::tuning::Tunable;
 use crate::device::{AMPLIFIED, SENSED, State, Step, TORQUE};
 use crate::hardware::{Board, Last};
 use crate::normalized_scene::NormalizedScene;
-use crate::plan::{Pattern, Plan, Request, Signs, TickTiming};
+use crate::plan::{Pattern, Plan, Readings, Request, Signs, TickTiming};
 use crate::timing::{Schedule, timer_counts};
 
 /// What became of a run.
@@ -260,6 +260,8 @@ struct Run<'a> {
     x: State,
     balance: EnergyBalance,
     outcome: Outcome,
+    /// The error of the encoder's angle in rad, behind its filter.
+    error: f64,
     /// Readings dropped in a row.
     dropped: u16,
     /// Ticks skipped, ticks without a code in time, periods since the last code.
@@ -276,7 +278,7 @@ impl<'a> Run<'a> {
     fn new(normalized: &'a NormalizedScene, plan: &'a Plan, schedule: &'a Schedule) -> Self {
         let mut board = Board::new(normalized.counts_per_radian, !plan.armed_by_boot);
         // As booting does it, with the device at the board's zero.
-        board.angle = plan.readings.of(plan.zero);
+        board.angle = plan.zero + plan.readings.error(plan.zero);
         board.zero_encoder();
         if plan.heats {
             board = board.heating();
@@ -297,6 +299,7 @@ impl<'a> Run<'a> {
             x,
             balance: EnergyBalance::default(),
             outcome: Outcome { score: -1.0, start, rate: -1.0, ..Outcome::default() },
+            error: plan.readings.error(plan.start[0]),
             dropped: 0,
             skipped: 0,
             in_a_row: 0,
@@ -328,7 +331,12 @@ impl<'a> Run<'a> {
             let share = 1.0 - (-1.0 / (updates * lags.amplifier)).exp();
             self.x[TORQUE] = (torque - self.x[AMPLIFIED]) * share * updates;
         }
+        let from = [self.x[0], self.x[1]];
         self.balance.advance(&mut self.x, step, held.damping);
+        if lags.sensor > 0.0 && self.plan.readings.waves[1] > 0.0 {
+            let path = [from, [self.x[0], self.x[1]]];
+            self.error = self.plan.readings.filtered(self.error, path, step.part, lags.sensor);
+        }
     }
 
     /// The tick of this period. `tick`: what happens to it; `shift`: when its torque begins.
@@ -337,7 +345,7 @@ impl<'a> Run<'a> {
         control: &mut Control<N, M>,
         inbox: &mut Inbox<'_, PreparedServo<Environment, N, M>>,
         requests: &mut Requests<'_, PreparedServo<Environment, N, M>>,
-        (period, timing, shift, drop): (u32, TickTiming, i8, bool),
+        (period, timing, shift, (drop, noise)): (u32, TickTiming, i8, (bool, i8)),
     ) -> Option<bool>
     where
         Environment: Tunable<N> + SupportsTiming<M>,
@@ -347,8 +355,12 @@ impl<'a> Run<'a> {
         let delayed = timing == TickTiming::Delayed && self.plan.delay > normalized.in_time;
         self.dropped = if drop && self.dropped < normalized.dropped { self.dropped + 1 } else { 0 };
         if self.dropped == 0 {
-            let filtered = self.schedule.lags.sensor > 0.0;
-            self.board.angle = self.plan.readings.of(self.x[if filtered { SENSED } else { 0 }]);
+            let Readings { noise: (peak, _), .. } = self.plan.readings;
+            let angle = match self.schedule.lags.sensor > 0.0 {
+                true => self.x[SENSED] + self.error,
+                false => self.x[0] + self.plan.readings.error(self.x[0]),
+            };
+            self.board.angle = angle + f64::from(noise) * peak;
         }
         self.board.passed = self.skipped + 1;
         self.board.late = is_late && !normalized.unreported;
@@ -498,10 +510,11 @@ where
         let window = (plan.periods / 4).max(LOOK);
         let mut rate = Rate { window, before: EnergyBalance::default(), last: -1.0 };
         let dropped = shifts(plan.readings.dropped.clone()).map(|sign| sign > 0);
+        let readings = dropped.zip(shifts(plan.readings.noise.1.clone()));
         let shifts = shifts(plan.jitter.torques.clone()).zip(shifts(plan.jitter.counts.clone()));
         let (mut overdue, mut target) = (None, 0.0);
         let mut next_request = plan.next_request(0);
-        let ticks = ticks(plan.pattern.clone()).zip(shifts).zip(dropped);
+        let ticks = ticks(plan.pattern.clone()).zip(shifts).zip(readings);
         for (period, ((tick, (shift, count)), drop)) in (0..plan.periods).zip(ticks) {
             if let Some(on) = overdue.take() {
                 run.motor.powered = on;

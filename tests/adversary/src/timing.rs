@@ -14,6 +14,9 @@ use crate::plan::{Plan, Signs};
 /// Instants nearer than this are one.
 const SAME: f64 = 1e-9;
 
+/// Steps of a period in which an encoder's error is filtered.
+const PIECES: u32 = 16;
+
 /// The times of a loop, as far as a scene states them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopTiming {
@@ -114,7 +117,11 @@ impl Schedule {
         let update = |i| start + timing.age + f64::from(i) / f64::from(timing.updates);
         let updates: Vec<f64> = (0..timing.updates).map(update).collect();
         let mut all = vec![0.0];
-        for at in counts.iter().chain(&torques).chain([&late]).chain(&updates) {
+        // An error is filtered in small steps.
+        let pieces =
+            if plan.readings.waves[1] > 0.0 && timing.sensor.most > 0.0 { PIECES } else { 0 };
+        let pieces: Vec<_> = (0..pieces).map(|i| f64::from(i) / f64::from(PIECES)).collect();
+        for at in counts.iter().chain(&torques).chain([&late]).chain(&updates).chain(&pieces) {
             let part = part(*at);
             if all.iter().all(|known: &f64| (known - part).abs() > SAME) {
                 all.push(part);

@@ -2,6 +2,8 @@
 //! each other.
 
 use adversary::device::{AMPLIFIED, HeldDevice, Lags, SENSED, TORQUE};
+use adversary::plan::Readings;
+use adversary::scenes::{self, Choice};
 use nalgebra::DVector;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -99,4 +101,42 @@ fn amplifier_and_sensor_lag_as_their_time_constants_say() {
         let lost = work - (held.energy(&x) - held.energy(&start)) - taken - squared;
         assert!(lost.abs() <= 1e-9 * size * size * (1.0 + held.energy(&start)), "{lost} {hand:?}");
     }
+}
+
+/// The error of an encoder behind its filter, on a cubic path, against Simpson's rule.
+#[test]
+fn an_error_is_filtered_as_the_time_constant_says() {
+    const PIECES: u32 = 2000;
+    let readings = Readings { waves: [7.0, 0.01, 0.4], ..Readings::default() };
+    let (part, lag, c) = (0.0625, 0.03, [0.2, 1.1, -3.0, 20.0]);
+    let path = |t: f64| {
+        let [x, v, a, j] = c;
+        [x + t * (v + t * (a + t * j)), v + t * (2.0 * a + 3.0 * t * j)]
+    };
+    let rate = |t: f64| ((t - part) / lag).exp() * readings.error(path(t)[0]) / lag;
+    let length = part / f64::from(PIECES);
+    let pieces = (0..PIECES).map(|i| f64::from(i) * length);
+    let simpson = |t: f64| rate(t) + 4.0 * rate(t + 0.5 * length) + rate(t + length);
+    let sum: f64 = pieces.map(simpson).sum::<f64>() * length / 6.0;
+    let exact = 0.003 * (-part / lag).exp() + sum;
+    let filtered = readings.filtered(0.003, [path(0.0), path(part)], part, lag);
+    assert!((filtered - exact).abs() < 1e-6 * readings.waves[1], "{filtered} {exact}");
+}
+
+/// Scenes whose encoders err before a filter, and have noise, are accepted, too.
+#[test]
+fn a_filter_stands_behind_errors_and_noise() {
+    let (mut both, mut noisy) = (0, 0);
+    for number in 0..400 {
+        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        rng.set_stream(number);
+        let Some(drawn) = scenes::draw(&mut rng, &Choice { latency: Some(true), ..Choice::ANY })
+        else {
+            continue;
+        };
+        let latency = drawn.scene.latency;
+        noisy += u32::from(latency.encoder.noise > 0.0);
+        both += u32::from(latency.encoder.linearity > 0.0 && !latency.sensor_lag.is_zero());
+    }
+    assert!(both > 0 && noisy > 10, "{both} {noisy}");
 }
