@@ -6,14 +6,16 @@ use std::sync::OnceLock;
 
 use analysis::file::{DeviceFile, Format, SceneFile, parse, parse_device, program};
 use analysis::hand::HandTrajectory;
-use analysis::identify::rig::{DrivenDevice, MeasuredDevice, Sensing};
+use analysis::identify::rig::{DrivenDevice, MeasuredDevice, Sensing, torque_of};
 use analysis::identify::{Correction, Estimate, record, slow_turns};
 use analysis::lockstep::SimulatedDevice;
 use analysis::missed::Missed;
+use analysis::program::turns;
 use analysis::simulation::plant::Plant;
 use analysis::toolchain::{
     BoardModel, NumberFormat, OtherDevice, Sources, Tools, TorqueOutput, prepare,
 };
+use haptic_servo::excitation::Exciter;
 use haptic_servo::fault::Fault;
 use haptic_servo::magnetic::{Chip, Frame, LONGEST, ReadingError};
 use haptic_servo::servo::{Latched, Transducers};
@@ -370,6 +372,13 @@ fn slow_turns_measure_a_gimbal_motor() {
     assert!(end.starts_with("end,done,"), "{end}");
     let record = record::parse("turns", rows.as_bytes(), TAU / 16_384.0).unwrap();
     assert_eq!(record.torque.len(), 160_000);
+    let sweep = turns::sweep(&file.transducers.of_board().unwrap());
+    let (mut host, step) = (Exciter::new(&sweep), torque_of(MID_SCALE + 1, FULL_SCALE));
+    // A row has the code that the DAC puts out in its tick, which is that of the tick before.
+    for (tick, torque) in record.torque[1..].iter().enumerate() {
+        let code = f64::from(host.next().code.offset());
+        assert_eq!((torque / step).round(), code, "tick {tick}");
+    }
     let found = slow_turns(&record, &Correction::of_encoder(16_384.0)).unwrap();
     let holds = |name: &str, Estimate { value, lo, hi }: Estimate, truth: f64| {
         println!("{name}: {truth} in {lo} to {hi}, {value}");
