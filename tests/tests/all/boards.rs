@@ -153,8 +153,8 @@ fn programs_of_every_kind_build_for_every_board_and_fit() {
         programs.iter().map(String::as_str).partition(|name| is_for(name, TorqueOutput::Bridge));
     let ours = ["damper_wall", "delayed_spring", "free_mode", "identify", "supervised_spring"];
     assert!(ours.iter().all(|name| programs.contains(name)), "{programs:?}");
-    // What a board does for programs: torques that are latched or at a phase, a host's, and two kinds of sweeps.
-    let kinds = ["damper_wall", "undelayed_wall", "hosted_wall", "identify", "turns"];
+    // What a board does for programs: torques that are latched or at a phase, a host's, and sweeps.
+    let kinds = ["damper_wall", "undelayed_wall", "hosted_wall", "identify"];
     for (board, output, names) in [
         (BoardModel::NucleoG474re, TorqueOutput::Dac, &programs[..]),
         (BoardModel::BG431bEsc1, TorqueOutput::Dac, &kinds),
