@@ -24,7 +24,7 @@ fn copy(name: &str) -> TempDir {
         std::fs::create_dir_all(to.parent().expect("a folder")).expect("a writable folder");
         std::fs::copy(from, to).is_ok()
     };
-    let rest = ["src/lib.rs", "src/main.rs", "build.rs", ".cargo/config.toml"];
+    let rest = ["src/lib.rs", "src/main.rs", "src/control.rs", "build.rs", ".cargo/config.toml"];
     assert!(rest.into_iter().filter(|name| copied(name)).count() > 0, "there is no source");
     to
 }
@@ -91,7 +91,7 @@ fn no_tick_can_panic() {
     let folder = copy("panic_free");
     let output = cargo(&folder, &["run"]);
     assert!(output.status.success(), "{}", text(&output.stderr));
-    let output = cargo(&folder, &["build", "--features", "control"]);
+    let output = cargo(&folder, &["build", "--bin", "control"]);
     let said = text(&output.stderr);
     assert!(!output.status.success() && said.contains("panic in function `control`"), "{said}");
 }

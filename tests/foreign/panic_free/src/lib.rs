@@ -109,8 +109,6 @@ macro_rules! ticks {
                 let raw = black_box(RawCount::from(7_u16));
                 cycle(black_box(&mut rendering), &mut energy, &mut frames, raw);
             }
-            #[cfg(feature = "control")]
-            black_box(control(black_box(&[1, 2]), black_box(1)));
         }
     };
 }
@@ -129,11 +127,4 @@ ticks! {
         ..Parts::NONE
     }
     .sum();
-}
-
-#[cfg(feature = "control")]
-#[no_panic]
-#[inline(never)]
-fn control(values: &[u8], index: usize) -> u8 {
-    values[index]
 }
