@@ -56,7 +56,7 @@ fn error(word: u16) -> ReadingError {
     match word {
         // Its parity is even, too.
         u16::MAX => ReadingError::Ones,
-        _ if word.count_ones() % 2 != 0 => ReadingError::Parity,
+        _ if !word.count_ones().is_multiple_of(2) => ReadingError::Parity,
         _ => ReadingError::Flag,
     }
 }

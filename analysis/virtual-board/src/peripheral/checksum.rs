@@ -50,7 +50,7 @@ impl ChecksumUnit {
                 let polynomial = self.registers.get(POLYNOMIAL) as u8;
                 for bit in (0..32).rev() {
                     let leaves = self.rest >> 7 ^ (value >> bit & 1) as u8;
-                    self.rest = self.rest << 1 ^ leaves * polynomial;
+                    self.rest = (self.rest << 1) ^ (leaves * polynomial);
                 }
                 Ok(())
             }

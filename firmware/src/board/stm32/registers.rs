@@ -30,8 +30,7 @@ use crate::servo_loop::Hardware;
 #[cfg(feature = "bridge")]
 use crate::servo_loop::OutputEvent;
 
-/// The registers of the servo's interrupt. The encoder has stopped after `FROZEN` ticks without a step; 0 for one that
-/// may rest.
+/// The registers of the servo's interrupt. After `FROZEN` ticks without a step the encoder has stopped; 0: it may rest.
 pub struct Registers<const FROZEN: u16 = 0> {
     pace: Pace,
     output: Output,
