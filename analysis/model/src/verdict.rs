@@ -233,8 +233,8 @@ pub fn judge_file_without_remedies(file: &SceneFile) -> VerdictReport {
     report.with_facts_of(file, bridge)
 }
 
-/// A scene as it was written, without the search for remedies, which takes many times as long where times are known to lie in
-/// ranges.
+/// A scene as it was written, without the search for remedies, which takes many times as long where times are
+/// known to lie in ranges.
 pub fn judge_without_remedies(name: &str, scene: &Scene, steps: &Resolution) -> VerdictReport {
     let assessment = assess_in(scene, Format::F64);
     reported(name, scene, Format::F64, steps, &assessment, assessment.outcome.err(), false)

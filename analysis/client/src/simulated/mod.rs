@@ -107,7 +107,8 @@ impl SimulatedBoard {
 
     /// Boots a program of a scene file in a simulated hand, the file's if it has one, and listens there, with the
     /// host of the file beside its servo, if it has one. The device has the file's friction and cogging, and its
-    /// encoder readings that fail. The sensor and the motor that the file does not state are the defaults of a simulation.
+    /// encoder readings that fail. The sensor and the motor that the file does not state are the defaults of a
+    /// simulation.
     ///
     /// # Errors
     /// No board renders the scene, or the address cannot be listened on.

@@ -173,9 +173,9 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     }
 }
 
-/// The answer of a design on a board. None certifies with a motor that the board's own bridge does not drive. Where nothing passes on one, the reason comes with it; if no board has
-/// the times of such a scene, or the scene states no limits of a board, the answer is that of the certificate
-/// alone.
+/// The answer of a design on a board. None certifies with a motor that the board's own bridge does not drive. Where
+/// nothing passes on one, the reason comes with it; if no board has the times of such a scene, or the scene states no
+/// limits of a board, the answer is that of the certificate alone.
 fn on_a_board(
     terms: &Terms,
     design: impl Fn(&Terms) -> DesignLimit<Vec<SceneFile>>,
