@@ -37,33 +37,21 @@ const CHECKSUM: Checksum = Checksum { polynomial: 0x43, bits: 18 };
 /// Angles in a turn.
 const ANGLES: usize = 1 << 14;
 
-/// The checksum of each angle without a status, so that one comparison checks a transfer: 16 kB. A transfer of zeros,
-/// whose checksum is right, has none.
-static CHECKSUMS: [u8; ANGLES] = {
-    let mut table = CHECKSUM.table(4);
-    table[0] = NONE;
-    table
-};
-
-/// No checksum.
-const NONE: u8 = u8::MAX;
+/// The checksum of each angle without a status, so that one comparison checks a transfer: 16 kB.
+static CHECKSUMS: [u8; ANGLES] = CHECKSUM.table(4);
 
 /// The same by the upper and the lower half of an angle, in 256 bytes.
 const HALVES: [[u8; 128]; 2] = [CHECKSUM.table(11), CHECKSUM.table(4)];
 
-/// The checksum of an angle, also of zero.
+/// [`CHECKSUMS`] where flash is short.
 const fn checksum_of_halves(angle: usize) -> u8 {
     HALVES[0][angle >> 7] ^ HALVES[1][angle & 0x7F]
 }
 
-/// [`CHECKSUMS`]: the program of a bridge leaves no room for the table.
+/// The checksum of an angle: the program of a bridge leaves no room for the table.
 #[inline(always)]
 fn checksum_of(angle: usize) -> u8 {
-    match angle {
-        _ if !cfg!(feature = "bridge") => CHECKSUMS[angle],
-        0 => NONE,
-        _ => checksum_of_halves(angle),
-    }
+    if cfg!(feature = "bridge") { checksum_of_halves(angle) } else { CHECKSUMS[angle] }
 }
 
 /// The same of each status.
@@ -72,20 +60,20 @@ const OF_STATUS: [u8; 16] = CHECKSUM.table(0);
 #[inline(always)]
 fn decode(&[first, second, _]: &Frame, _: Remainder) -> Result<u32, ReadingError> {
     let bits = u32::from(first) << 12 | u32::from(second);
-    let angle = (bits >> 10) as usize % ANGLES;
-    match bits {
-        _ if u16::from(checksum_of(angle)) == second & 0x3FF => Ok(angle as u32),
-        0 => Err(ReadingError::Zeros),
-        _ => unusual(bits),
+    if bits == 0 {
+        // The checksum of zeros is zero.
+        return Err(ReadingError::Zeros);
     }
+    let angle = (bits >> 10) as usize % ANGLES;
+    if u16::from(checksum_of(angle)) == second & 0x3FF { Ok(angle as u32) } else { unusual(bits) }
 }
 
-/// The angle of a transfer with a status, or in a turn zero.
+/// The angle of a transfer with a status.
 #[cold]
 #[inline(never)]
 fn unusual(bits: u32) -> Result<u32, ReadingError> {
     let (angle, status) = (bits >> 10, bits >> 6 & 0xF);
-    let of_angle = checksum_of_halves(angle as usize % ANGLES);
+    let of_angle = checksum_of(angle as usize % ANGLES);
     match bits {
         // The checksum of ones is none.
         0xFF_FFFF => Err(ReadingError::Ones),
@@ -103,6 +91,6 @@ mod tests {
 
     #[test]
     fn halves_of_an_angle_have_its_checksum() {
-        assert!((1..ANGLES).all(|angle| checksum_of_halves(angle) == CHECKSUMS[angle]));
+        assert!((0..ANGLES).all(|angle| checksum_of_halves(angle) == CHECKSUMS[angle]));
     }
 }
