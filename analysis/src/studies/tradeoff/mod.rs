@@ -1,7 +1,7 @@
 //! Speed against accuracy: tables of measured methods, each with its cost and its error, and their
 //! Pareto front.
 //!
-//! A [`Comparison`] has the topic and its columns; a [`Tradeoff`] is the measured table, kept as CSV
+//! A `Comparison` has the topic and its columns; a `Tradeoff` is the measured table, kept as CSV
 //! beside its chart.
 
 pub mod certificate;
