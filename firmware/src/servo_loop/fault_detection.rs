@@ -103,18 +103,6 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         }
     }
 
-    /// Stops the servo at the fault of an encoder that does not move.
-    #[cold]
-    #[inline(never)]
-    pub(super) fn on_stopped_encoder(
-        &mut self,
-        fault: Fault,
-        hardware: &mut impl Hardware,
-        inbox: &mut Incoming<'_, E, N, M>,
-    ) {
-        self.fail(fault, hardware, inbox);
-    }
-
     /// Stops the servo at a torque that is not a number.
     #[cold]
     #[inline(never)]
@@ -205,7 +193,9 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     }
 
     /// Records a fault, and stops the servo if the amplifier is on.
-    fn fail(
+    #[cold]
+    #[inline(never)]
+    pub(super) fn fail(
         &mut self,
         fault: Fault,
         hardware: &mut impl Hardware,

@@ -55,8 +55,7 @@ pub trait Hardware {
     /// for one period whose tick is late. A simulated board may omit [`BEGAN_LATE`] if its count is always
     /// that of the period's beginning.
     fn periods_since_last(&mut self) -> u32;
-    /// Both: the periods, then the count. A board whose count has come before it knows the periods need not read it
-    /// again.
+    /// The periods since the last call, then the count. A board whose count came before the tick may know it earlier.
     #[inline(always)]
     fn sample(&mut self) -> (u32, RawCount) {
         (self.periods_since_last(), self.count())

@@ -217,7 +217,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         if hardware.never_rests() && step == 0 {
             cold_path();
             if let Some(fault) = hardware.rested(tick) {
-                self.on_stopped_encoder(fault, hardware, inbox);
+                self.fail(fault, hardware, inbox);
                 // Read again rather than kept.
                 pending = inbox.pending();
             }
