@@ -137,8 +137,8 @@ pub struct VirtualBoard {
     told: Vec<String>,
 }
 
-/// A chip that reads the same angle [200 times](haptic_servo::magnetic::Chip::frozen_after) counts as stopped. So one
-/// position in a hundred at rest is off by a count.
+/// A chip that reads the same angle [100 times](haptic_servo::magnetic::Chip::frozen_after) counts as stopped. So one
+/// position in fifty at rest is off by a count.
 #[derive(Default)]
 struct Rest {
     /// The position without that, and how often it was the same.
@@ -147,7 +147,7 @@ struct Rest {
 }
 
 impl Rest {
-    const LONGEST: u32 = 100;
+    const LONGEST: u32 = 50;
 
     fn reads(&mut self, count: i32, may_be_off: bool) -> i32 {
         self.equal = if count == self.count { self.equal + 1 } else { 0 };

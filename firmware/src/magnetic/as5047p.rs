@@ -25,7 +25,7 @@ pub const AS5047P: Chip = Chip {
     age: TimeRange::between(9e-5, 1.12e-4),
     is_period_late: true,
     lag: TimeRange::ZERO,
-    frozen_after: Some(200),
+    frozen_after: Some(100),
     ones_are_angle: false,
     checksum: None,
     decode,

@@ -21,7 +21,7 @@ pub const AS5048A: Chip = Chip {
     age: TimeRange::between(9.1e-5, 1.99e-4),
     is_period_late: true,
     lag: TimeRange::ZERO,
-    frozen_after: Some(200),
+    frozen_after: Some(100),
     ones_are_angle: false,
     checksum: None,
     decode,

@@ -32,7 +32,7 @@ pub const MA702: Chip = Chip {
     is_period_late: false,
     lag: TimeRange::exactly(5.3e-5),
     // More than a count of 16 bits of noise, by its resolution.
-    frozen_after: Some(200),
+    frozen_after: Some(100),
     ones_are_angle: true,
     checksum: None,
     decode,

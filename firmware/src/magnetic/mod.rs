@@ -125,7 +125,7 @@ pub struct Chip {
     pub lag: TimeRange,
     /// Ticks in a row without a step that its noise rules out; `None` if it may be as quiet as that at rest: then
     /// nothing in its transfers tells a chip that has stopped from a handle that stands still.
-    pub frozen_after: Option<u16>,
+    pub frozen_after: Option<u32>,
     /// Whether all bits 1 are the last angle of a turn, and not only a line that nothing drives.
     pub ones_are_angle: bool,
     /// The checksum whose remainder [`Self::decode`] asks for.
@@ -166,7 +166,7 @@ impl Chip {
     }
 
     /// The same, and 0 for a chip that may be at rest.
-    pub const fn frozen(&self) -> u16 {
+    pub const fn frozen(&self) -> u32 {
         match self.frozen_after {
             Some(ticks) => ticks,
             None => 0,

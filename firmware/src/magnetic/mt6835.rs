@@ -22,7 +22,7 @@ pub const MT6835: Chip = Chip {
     is_period_late: false,
     lag: TimeRange::ZERO,
     // Noise of tens of counts.
-    frozen_after: Some(200),
+    frozen_after: Some(100),
     ones_are_angle: false,
     checksum: Some(CHECKSUM),
     decode,

@@ -76,15 +76,23 @@ fn only_a_chip_that_is_never_quiet_can_be_told_to_be_frozen() {
     // Those which say that their noise is above a count.
     let never_rest = Chip::ALL.map(|chip| chip.frozen() > 0);
     assert_eq!(never_rest, Chip::ALL.map(|chip| *chip != MT6701));
+    // A tick with a step is not told.
+    let stops = |rests: &mut Rests, ticks: &[u32]| ticks.iter().position(|&tick| rests.take(tick, 3));
     let mut rests = Rests::default();
-    let mut take = |tick| rests.take(tick, 3).is_ok();
-    assert_eq!([8, 9, 10, 11, 12].map(&mut take), [true, true, true, false, false]);
-    // A tick with a step is not told, and begins anew.
-    assert_eq!([14, 15, 16].map(&mut take), [true; 3]);
-    assert!(!take(17));
-    rests.take(20, 3).unwrap();
+    assert_eq!(stops(&mut rests, &[3, 8, 9, 11, 12, 14, 16]), None);
+    assert!(!rests.are(3));
+    // Again as long as it stands still, and not after a step.
+    assert_eq!(stops(&mut rests, &[18, 19, 20, 21, 22]), Some(4));
+    assert!(rests.are(3) && rests.take(23, 3) && !rests.take(25, 3));
     rests.miss(2);
-    assert_eq!([23, 24, 25].map(|tick| rests.take(tick, 3).is_ok()), [true, true, false]);
+    assert_eq!(stops(&mut rests, &[28, 29, 30]), Some(2));
+    // From any tick on, after 3 to 6 of them.
+    for rested in 0..5_u32 {
+        let mut rests = Rests::default();
+        assert_eq!(stops(&mut rests, &(10..10 + rested).map(|at| 2 * at).collect::<Vec<_>>()), None);
+        let found = stops(&mut rests, &[100, 101, 102, 103, 104, 105]);
+        assert!(found.is_some_and(|last| (2..6).contains(&last)), "{rested}: {found:?}");
+    }
 }
 
 #[test]

@@ -103,15 +103,19 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         }
     }
 
-    /// Stops the servo at a torque that is not a number.
+    /// Stops the servo at a torque that is not a number, or at an encoder that has stopped. Returns the reason for the
+    /// limit of the torque.
     #[cold]
     #[inline(never)]
-    pub(super) fn stop_on_nan(
+    pub(super) fn stop_without_torque(
         &mut self,
+        step: i32,
         hardware: &mut impl Hardware,
         inbox: &mut Incoming<'_, E, N, M>,
-    ) {
-        self.fail(Fault::NotANumber, hardware, inbox);
+    ) -> LimitReason {
+        let stopped = if step == 0 { hardware.stopped() } else { None };
+        self.fail(stopped.unwrap_or(Fault::NotANumber), hardware, inbox);
+        if stopped.is_some() { LimitReason::None } else { LimitReason::NotANumber }
     }
 
     /// Stops the servo after the torque output reported a fault and has taken the torque away, or moves a host's

@@ -65,12 +65,12 @@ pub trait Hardware {
     fn reading_fault(&mut self) -> Option<Fault> {
         None
     }
-    /// Whether the noise of the encoder moves its count, so that [`Self::rested`] has to know each tick without a step.
-    fn never_rests(&self) -> bool {
+    /// Takes the number of a tick without a step; whether the encoder has stopped. A counter may rest.
+    fn rested(&mut self, _tick: u32) -> bool {
         false
     }
-    /// The fault of an encoder that has stopped, by the number of a tick without a step.
-    fn rested(&mut self, _tick: u32) -> Option<Fault> {
+    /// The fault of an encoder that has stopped by the last [`Self::rested`].
+    fn stopped(&self) -> Option<Fault> {
         None
     }
     /// Timer counts since the period of this tick began; at least a period once the next one has

@@ -32,8 +32,6 @@ pub use swap::longest_gap;
 
 pub use crate::output_timing::READ_WITHIN;
 
-use core::hint::cold_path;
-
 use crate::dac::DacCode;
 use crate::energy::EnergyMonitor;
 use crate::fault::Fault;
@@ -172,6 +170,10 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         let count = self.rendering.servo().low_count();
         let step = count.wrapping_sub(before);
         let (mut code, mut limit) = (output.code, output.limit);
+        // Beside the difference, whose flags it takes, and without a call, for which values would be kept.
+        if step == 0 && hardware.rested(tick) {
+            limit = LimitReason::NotANumber;
+        }
         if self.rendering.timing_limits().is_too_far(step) {
             self.check_jump(passed, step, hardware, inbox);
         }
@@ -192,7 +194,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             self.on_output_event(event, hardware, inbox);
         }
         if limit == LimitReason::NotANumber {
-            self.stop_on_nan(hardware, inbox);
+            limit = self.stop_without_torque(step, hardware, inbox);
         }
         let mut pending = inbox.pending();
         if self.state != State::Running {
@@ -214,14 +216,6 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         }
         // Bookkeeping: energy, requests and states, watchdog, telemetry.
         self.energy.observe::<M>(step, code);
-        if hardware.never_rests() && step == 0 {
-            cold_path();
-            if let Some(fault) = hardware.rested(tick) {
-                self.fail(fault, hardware, inbox);
-                // Read again rather than kept.
-                pending = inbox.pending();
-            }
-        }
         // A host's due tick is at most the link's.
         let due = self.rendering.host().due().unwrap_or(self.link_deadline);
         if pending != 0 || tick.wrapping_sub(due).cast_signed() >= 0 {

@@ -262,13 +262,13 @@ fn a_chip_that_stops_is_a_fault() {
     assert_eq!(bench.fault(), None);
     assert_ne!(bench.last_code(), Some(MID_SCALE));
     // A reading that fails has no step, too.
-    fail(&mut bench, Some(Failure::Frozen), 100);
+    fail(&mut bench, Some(Failure::Frozen), 50);
     fail(&mut bench, Some(Failure::Bit(3)), 1);
-    fail(&mut bench, Some(Failure::Frozen), 90);
+    fail(&mut bench, Some(Failure::Frozen), 45);
     assert_eq!(bench.fault(), None);
-    fail(&mut bench, Some(Failure::Frozen), 12);
+    fail(&mut bench, Some(Failure::Frozen), 106);
     let error = ReadingError::Frozen as u32;
-    assert_eq!(bench.fault(), Some(Fault::EncoderReading { error, allowed: 199 }));
+    assert_eq!(bench.fault(), Some(Fault::EncoderReading { error, allowed: 99 }));
 }
 
 /// Readings fail by the law of a simulation: the codes are those of the readings before.

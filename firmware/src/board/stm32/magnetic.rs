@@ -579,7 +579,7 @@ macro_rules! board_encoder {
         const ENCODER: &$crate::board::stm32::magnetic::Setup = &ENCODER_SETUP;
 
         /// Ticks without a step of a chip that has stopped.
-        const FROZEN: u16 = $chip.frozen();
+        const FROZEN: u32 = $chip.frozen();
     };
 }
 

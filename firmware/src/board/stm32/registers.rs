@@ -20,7 +20,7 @@ use crate::encoder::RawCount;
 use crate::fault::Fault;
 use crate::fault::FaultRecord;
 #[cfg(feature = "magnetic")]
-use crate::magnetic::Rests;
+use crate::magnetic::{ReadingError, Rests};
 use crate::output_timing::OutputTiming;
 use crate::period;
 use crate::reset::ResetCause;
@@ -31,14 +31,14 @@ use crate::servo_loop::Hardware;
 use crate::servo_loop::OutputEvent;
 
 /// The registers of the servo's interrupt. After `FROZEN` ticks without a step the encoder has stopped; 0: it may rest.
-pub struct Registers<const FROZEN: u16 = 0> {
+pub struct Registers<const FROZEN: u32 = 0> {
     pace: Pace,
     output: Output,
     #[cfg(feature = "magnetic")]
     rests: Rests,
 }
 
-impl<const FROZEN: u16> Registers<FROZEN> {
+impl<const FROZEN: u32> Registers<FROZEN> {
     /// Prepares the pace of the servo and the torque output; neither runs yet.
     ///
     /// # Errors
@@ -85,7 +85,7 @@ impl<const FROZEN: u16> Registers<FROZEN> {
     }
 }
 
-impl<const FROZEN: u16> Hardware for Registers<FROZEN> {
+impl<const FROZEN: u32> Hardware for Registers<FROZEN> {
     #[inline(always)]
     fn count(&mut self) -> RawCount {
         output::count()
@@ -117,16 +117,17 @@ impl<const FROZEN: u16> Hardware for Registers<FROZEN> {
 
     #[cfg(feature = "magnetic")]
     #[inline(always)]
-    fn never_rests(&self) -> bool {
-        FROZEN > 0
+    fn rested(&mut self, tick: u32) -> bool {
+        FROZEN > 0 && self.rests.take(tick, FROZEN)
     }
 
     #[cfg(feature = "magnetic")]
-    #[inline(always)]
-    fn rested(&mut self, tick: u32) -> Option<Fault> {
-        let allowed = FROZEN - 1;
-        let error = self.rests.take(tick, allowed).err()?;
-        Some(Fault::EncoderReading { error: error as u32, allowed: allowed.into() })
+    fn stopped(&self) -> Option<Fault> {
+        let stopped = FROZEN > 0 && self.rests.are(FROZEN);
+        stopped.then(|| Fault::EncoderReading {
+            error: ReadingError::Frozen as u32,
+            allowed: FROZEN - 1,
+        })
     }
 
     #[cfg(feature = "bridge")]
@@ -186,7 +187,7 @@ impl<const FROZEN: u16> Hardware for Registers<FROZEN> {
     }
 }
 
-impl<const FROZEN: u16> Startup for Registers<FROZEN> {
+impl<const FROZEN: u32> Startup for Registers<FROZEN> {
     #[cfg(not(feature = "magnetic"))]
     fn zero_encoder(&mut self) {
         ENCODER.zero();

@@ -40,7 +40,7 @@ pub const TICK: pac::Interrupt = pac::Interrupt::TIM6_DAC;
 pub const TICK: pac::Interrupt = pac::Interrupt::DMA1_CHANNEL1;
 
 /// The state of the servo's interrupt.
-pub type ServoCell<E, N, M, const FROZEN: u16> = IsrCell<ServoIsr<Registers<FROZEN>, E, N, M>>;
+pub type ServoCell<E, N, M, const FROZEN: u32> = IsrCell<ServoIsr<Registers<FROZEN>, E, N, M>>;
 
 /// The link to the host, for the task below the servo.
 pub type HostLink<E, N, M> = Link<Serial, E, N, M>;
@@ -52,7 +52,7 @@ pub type LinkCell<E, N, M> = StaticCell<HostLink<E, N, M>>;
 pub type Task<E, N, M, S> = fn(&'static mut HostLink<E, N, M>) -> Result<SpawnToken<S>, SpawnError>;
 
 /// The statics of a program, with its scene's types.
-pub struct Statics<E: Rendering<N> + 'static, N: Number, M: 'static, const FROZEN: u16> {
+pub struct Statics<E: Rendering<N> + 'static, N: Number, M: 'static, const FROZEN: u32> {
     /// State of the servo's interrupt.
     pub servo: &'static ServoCell<E, N, M, FROZEN>,
     /// The mailbox between the interrupt and the task below.
@@ -66,7 +66,7 @@ pub struct Statics<E: Rendering<N> + 'static, N: Number, M: 'static, const FROZE
 }
 
 /// Runs a scene: its servo in the pacing timer's interrupt, and the host's `task` below it.
-pub fn run<E, N, M, S, const FROZEN: u16>(
+pub fn run<E, N, M, S, const FROZEN: u32>(
     name: &'static str,
     program: Program<E>,
     statics: Statics<E, N, M, FROZEN>,
@@ -110,7 +110,7 @@ pub const fn with_board_counter<E: Copy>(program: Program<E>) -> Program<E> {
 /// stack.
 #[inline(never)]
 #[expect(clippy::mut_from_ref, reason = "the reference is to a static that is initialised once")]
-fn bring_up<E, N, M, const FROZEN: u16>(
+fn bring_up<E, N, M, const FROZEN: u32>(
     name: &'static str,
     program: Program<E>,
     statics: Statics<E, N, M, FROZEN>,
@@ -158,7 +158,7 @@ impl<E: Tunable<N> + SupportsTiming<M>, N: Number, M: OutputMode> HostLink<E, N,
 }
 
 /// The registers of the servo's interrupt for a period in s; ends the program if the period is invalid.
-pub fn registers<const FROZEN: u16>(
+pub fn registers<const FROZEN: u32>(
     setup: output::Setup,
     seconds: f64,
     timing: OutputTiming,
@@ -334,7 +334,7 @@ macro_rules! board_encoder {
 
         const ENCODER: $crate::board::input_filter::InputFilter = FILTER;
 
-        const FROZEN: u16 = 0;
+        const FROZEN: u32 = 0;
     };
     ([$chip:expr], $($any:tt)*) => {
         compile_error!(

@@ -31,7 +31,7 @@ use crate::wire::Port;
 use crate::wire::sweep::{SweepReceiver, SweepRequest};
 
 /// The state of the sweep's interrupt.
-pub type SweepCell<const FROZEN: u16> = IsrCell<SweepIsr<FROZEN>>;
+pub type SweepCell<const FROZEN: u32> = IsrCell<SweepIsr<FROZEN>>;
 
 /// Transducers and limits of a sweep.
 pub struct Setup {
@@ -62,7 +62,7 @@ static LISTENING: AtomicU32 = AtomicU32::new(0);
 static ENDED: AtomicU32 = AtomicU32::new(0);
 
 /// The state of the sweep's interrupt.
-pub struct SweepIsr<const FROZEN: u16> {
+pub struct SweepIsr<const FROZEN: u32> {
     beginning: Exciter<'static>,
     exciter: Exciter<'static>,
     /// Samples of the sweep, and the remaining samples.
@@ -85,7 +85,7 @@ pub struct SweepIsr<const FROZEN: u16> {
     dropped: u32,
 }
 
-impl<const FROZEN: u16> SweepIsr<FROZEN> {
+impl<const FROZEN: u32> SweepIsr<FROZEN> {
     /// One tick: the sweep's next sample while a sweep is requested, otherwise none.
     #[inline(always)]
     pub fn tick(&mut self) {
@@ -154,7 +154,7 @@ impl<const FROZEN: u16> SweepIsr<FROZEN> {
 
     /// Whether the encoder has stopped. The sweep's own numbers of ticks stand still before its first.
     fn has_stopped(&mut self, step: i32) -> bool {
-        self.hardware.never_rests() && step == 0 && self.hardware.rested(self.tick).is_some()
+        step == 0 && self.hardware.rested(self.tick)
     }
 
     fn tell(&mut self, count: i32) {
@@ -180,7 +180,7 @@ fn tell_end(end: SweepEnd) {
 }
 
 /// Waits for the host, and plays the sweep at its request.
-pub fn measure<const N: usize, const FROZEN: u16>(
+pub fn measure<const N: usize, const FROZEN: u32>(
     sweep: &'static Sweep<N>,
     setup: &Setup,
     cell: &'static SweepCell<FROZEN>,
