@@ -178,8 +178,11 @@ pub fn read(latency: Latency, period: f64, coupling: Coupling) -> Latency {
     if rng.random_bool(0.4) {
         reading.noise = log_uniform(rng, 0.5, 300.0);
     }
+    if rng.random_bool(0.3) {
+        reading.hysteresis = log_uniform(rng, 0.5, 300.0);
+    }
     if coupling == Coupling::Matched {
-        // No more than an age and noise has a proof there.
+        // No more than an age, noise and hysteresis has a proof there.
         return latency.read_by(kept(reading));
     }
     if rng.random_bool(0.7) {

@@ -81,6 +81,8 @@ pub struct NormalizedScene {
     pub linearity: f64,
     /// Peak of the encoder's noise in rad.
     pub noise: f64,
+    /// Width of its hysteresis in rad.
+    pub hysteresis: f64,
     /// Readings in a row that may be dropped, each of which is then the one before.
     pub dropped: u16,
 }
@@ -117,7 +119,7 @@ impl NormalizedScene {
         let unit = declared / scene.timing.period;
         let steps = Resolution::of(transducers, None);
         let count = TAU / transducers.counts_per_turn;
-        // With its noise.
+        // With its noise and its hysteresis.
         let step = count * scene.latency.encoder.steps();
         // A rigid device has no more passivity than damping, whatever was declared.
         let has = declared.min(scene.device.damping);
@@ -221,6 +223,7 @@ impl NormalizedScene {
             sets,
             linearity: latency.encoder.linearity,
             noise: latency.encoder.noise * count,
+            hysteresis: latency.encoder.hysteresis * count,
             dropped: latency.encoder.dropped,
         })
     }

@@ -262,6 +262,8 @@ struct Run<'a> {
     outcome: Outcome,
     /// The error of the encoder's angle in rad, behind its filter.
     error: f64,
+    /// The angle that follows the device's behind the encoder's hysteresis.
+    followed: f64,
     /// Readings dropped in a row.
     dropped: u16,
     /// Ticks skipped, ticks without a code in time, periods since the last code.
@@ -300,6 +302,7 @@ impl<'a> Run<'a> {
             balance: EnergyBalance::default(),
             outcome: Outcome { score: -1.0, start, rate: -1.0, ..Outcome::default() },
             error: plan.readings.error(plan.start[0]),
+            followed: plan.start[0],
             dropped: 0,
             skipped: 0,
             in_a_row: 0,
@@ -360,7 +363,9 @@ impl<'a> Run<'a> {
                 true => self.x[SENSED] + self.error,
                 false => self.x[0] + self.plan.readings.error(self.x[0]),
             };
-            self.board.angle = angle + f64::from(noise) * peak;
+            let play = normalized.hysteresis / 2.0;
+            self.followed = self.followed.clamp(angle - play, angle + play);
+            self.board.angle = self.followed + f64::from(noise) * peak;
         }
         self.board.passed = self.skipped + 1;
         self.board.late = is_late && !normalized.unreported;
