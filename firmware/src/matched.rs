@@ -55,8 +55,7 @@ impl MatchedCoupling {
     /// The coupling for a device of this passivity (N m s/rad) at this period (s), and at this longest time
     /// between two updates (s) if updates may be missed.
     ///
-    /// `None` if a number is out of range, if two lags are so nearly equal that their difference cannot be
-    /// distinguished from zero, or if no window of torques exists.
+    /// `None` if a number is out of range, or if no window of torques exists.
     pub const fn of(
         period: f64,
         worst_period: Option<f64>,

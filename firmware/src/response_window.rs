@@ -58,9 +58,8 @@ impl ResponseWindow {
     /// updates, in s. Without `UPDATES` there is none for an amplifier that is updated several times in a
     /// period.
     ///
-    /// `None` if a number is out of range, if two lags are too nearly equal, if a torque may begin more than
-    /// a period before its count, or if updates may be missed and the torque of a count does not have all of
-    /// its effect within a period after it.
+    /// `None` if a number is out of range, if a torque may begin more than a period before its count, or if
+    /// updates may be missed and the torque of a count does not have all of its effect within a period after it.
     pub const fn of<const UPDATES: bool>(
         period: f64,
         worst_period: Option<f64>,
@@ -77,7 +76,7 @@ impl ResponseWindow {
             [Interval::decimal(latency.output_jitter), Interval::decimal(latency.count_jitter)];
         let jitter = jitters[0].add(jitters[1]).div(t);
         let both = jitters[0].min(jitters[1]).double().div(t);
-        let range = [latency.actuator_lag, latency.sensor_lag];
+        let range = latency.lags();
         let (least, most) = (
             End::of::<UPDATES>(t, latency, delay.least, [range[0].least, range[1].least]),
             End::of::<UPDATES>(t, latency, delay.most, [range[0].most, range[1].most]),

@@ -109,6 +109,44 @@ fn limits_and_compliances_have_their_digits() {
     }
 }
 
+/// Of two equal lags the rest of a step is `(1 + t / tau) exp(-t / tau)`, whose integral from a time on is
+/// `(2 tau + t) exp(-t / tau)`. The coupling absorbs at least that, and its limit is little less than that of lags that
+/// differ.
+#[test]
+fn equal_lags_are_absorbed() {
+    const TAU: f64 = 0.5;
+    let of = |sensor_lag: f64, format| {
+        let latency = Latency { sensor_lag: TimeRange::exactly(sensor_lag), ..Latency::NONE }
+            .with_actuator_lag(TAU);
+        (latency.trails(), MatchedCoupling::of(1.0, None, 1.0, &latency, format).expect("a coupling"))
+    };
+    // Times `T / (2 delta)`.
+    let rest = |t: f64| 0.5 * (2.0 * TAU + t) * (-t / TAU).exp();
+    let differ = of(0.99 * TAU, Format::F64).1.limit;
+    for nearly in [0.0, 1e-15, -1e-9, 1e-5, -2e-4] {
+        let (trails, coupling) = of(TAU * (1.0 + nearly), Format::F64);
+        assert!(trails >= coupling.trails.iter().filter(|trail| trail.gain != 0.0).count());
+        let limit = coupling.limit.lo() / differ.lo();
+        assert!(limit > 0.999 && limit < 1.0, "{nearly}: {limit}");
+        let absorbs = |m: i32| match m {
+            0 => coupling.compliance,
+            1 => coupling.arriving,
+            _ => coupling.trails.iter().map(|trail| trail.gain * trail.decay.powi(m - 2)).sum(),
+        };
+        for m in 0..20 {
+            let all: f64 = (m..200).map(absorbs).sum();
+            // From the count on; before its torque begins all of a step is left.
+            let exact = if m == 0 { 0.5 + rest(0.0) } else { rest(f64::from(m - 1)) };
+            let over = all / exact - 1.0;
+            assert!((-1e-9..0.01).contains(&over), "{nearly}, {m}: {all} {exact}");
+        }
+        for format in [Format::F32, Format::Fixed { fraction_bits: 24 }] {
+            let limit = of(TAU * (1.0 + nearly), format).1.limit.lo() / differ.lo();
+            assert!(limit > 0.99, "{nearly} {format:?}: {limit}");
+        }
+    }
+}
+
 /// Loops of an independent computation that grow beyond their limit, and that do not below it.
 #[test]
 fn scenes_next_to_their_limit_are_judged_as_their_loops_behave() {
