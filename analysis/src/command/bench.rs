@@ -151,8 +151,8 @@ fn beside_host(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<(), C
     Ok(())
 }
 
-/// What the readings of an MT6701 add to the servo's interrupt, which is the end of their transfer.
-fn about_encoders() -> Result<[Figure; 2], CommandError> {
+/// What the readings of magnetic encoders add to the servo's interrupt, which is the end of their transfer.
+fn about_encoders() -> Result<Vec<Figure>, CommandError> {
     let on_virtual_board = |file: SceneFile, name: &str| {
         measured(&file, name, |program, input, servo| {
             let built =
@@ -161,18 +161,16 @@ fn about_encoders() -> Result<[Figure; 2], CommandError> {
             Ok(run_with_backend(input, servo, backend, DEFAULT_TICKS, || {})?)
         })
     };
-    let [read, counted] = bench::encoder::walls()?;
-    let read = on_virtual_board(read, "magnetic_wall.toml")?;
+    let [(first, noise), ..] = bench::encoder::CHIPS;
+    let counted = SceneFile { chip: None, ..bench::encoder::wall(first, noise)? };
     let counted = on_virtual_board(counted, "counted_wall.toml")?;
-    let figure = |what, more| {
-        Figure::within(
-            format!("an MT6701's readings: added to the interrupt, {what}"),
-            more,
-            &READING,
-        )
-    };
-    let most = read.max as f64 - counted.max as f64;
-    Ok([figure("mean", read.mean - counted.mean), figure("most", most)])
+    let mut figures = Vec::new();
+    for (chip, noise) in bench::encoder::CHIPS {
+        let read = on_virtual_board(bench::encoder::wall(chip, noise)?, "magnetic_wall.toml")?;
+        let name = format!("readings of {}: added to the interrupt", chip.name);
+        figures.push(Figure::within(name, read.mean - counted.mean, &READING));
+    }
+    Ok(figures)
 }
 
 /// The instructions of the whole interrupt of a scene file's program, which runs on a board in the hand that

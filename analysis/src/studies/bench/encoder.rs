@@ -4,6 +4,7 @@ use std::convert::Infallible;
 
 use haptic_servo::certificate::is_static_at_port;
 use haptic_servo::environment::Wall;
+use haptic_servo::magnetic::{AS5048A, Chip, MA702, MT6701, MT6835, Transfers};
 use haptic_servo::scene::{Coupling, EncoderReading, Scene, TimeRange, Timing};
 
 use super::figure::{Pair, seconds};
@@ -23,12 +24,27 @@ const READING: EncoderReading = EncoderReading {
 /// The same of which one in a row may fail, for laws of one position.
 const DROPPING: EncoderReading = EncoderReading { dropped: 1, ..READING };
 
-/// A wall that a board reads by an MT6701, and the same with a quadrature encoder on the board's timer.
-pub fn walls() -> Result<[SceneFile; 2], FileError> {
+/// One chip of each driver, and its noise in counts: that of docs/encoders.md or less, as a reading without a step costs
+/// more than another.
+pub const CHIPS: [(&Chip, u32); 4] = [(&MT6701, 2), (&MA702, 2), (&MT6835, 10), (&AS5048A, 2)];
+
+/// A wall that a board reads by a chip with this noise in counts.
+pub fn wall(chip: &Chip, noise: u32) -> Result<SceneFile, FileError> {
     const WALL: &str = include_str!("../../../virtual-board/tests/board/magnetic_wall.toml");
-    let wall = parse("magnetic_wall.toml", Format::Toml, WALL)?;
-    let counted = SceneFile { chip: None, ..wall.clone() };
-    Ok([wall, counted])
+    const PERIOD: f64 = 1e-3;
+    let TimeRange { least, most } = chip.age_in(&Transfers::at_count(PERIOD));
+    let (name, lag) = (chip.name, chip.lag.most);
+    let mut text = WALL.to_owned();
+    for (line, chip_s) in [
+        ("chip = \"mt6701\"", format!("chip = \"{name}\"\nlag = {lag}")),
+        ("age = [0.0, 1.0e-5]", format!("age = [{least}, {most}]")),
+        ("noise = 2", format!("noise = {noise}")),
+        // An AS504x is a period late already.
+        ("dropped = 1", "dropped = 0".to_owned()),
+    ] {
+        text = text.replace(line, &chip_s);
+    }
+    parse("magnetic_wall.toml", Format::Toml, &text)
 }
 
 /// Scenes of devices that people build with such an encoder: springs and one-sided walls without a coupling and
