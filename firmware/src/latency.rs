@@ -250,27 +250,27 @@ impl Latency {
     /// The number of decaying series in the effect of past torques: one for each lag, two if it is known in a
     /// range.
     pub const fn trails(&self) -> usize {
-        let [actuator, sensor] = self.lags();
-        actuator.trails() + sensor.trails()
+        self.actuator_lag.trails() + self.sensor_lag_apart().trails()
     }
 
-    /// The lags of amplifier and sensor, of which that of the sensor has a wider range where it is too near to the
-    /// other: their response is the difference of two exponentials, over that of their time constants. The rest of
-    /// a step rises with each of them, so that an end farther out is earlier, or later, than the end itself.
-    pub const fn lags(&self) -> [TimeRange; 2] {
-        /// The part of a lag by which the other one differs from it, whose square is near to the rounding of `f32`.
-        const APART: f64 = 1.0 / 4096.0;
-        const fn are_near(first: f64, second: f64) -> bool {
-            first > 0.0 && second > 0.0 && (first - second).abs() < APART * first
+    /// The lag of the sensor, in a wider range where it is too near to that of the amplifier: their response is the
+    /// difference of two exponentials, over that of their time constants. The rest of a step rises with each of them,
+    /// so that an end farther out is earlier, or later, than the end itself.
+    pub const fn sensor_lag_apart(&self) -> TimeRange {
+        /// Positive numbers are ordered as their bits. By this many the lags differ, between a 4096th and a 2048th,
+        /// whose square is near to the rounding of `f32`.
+        const APART: u64 = 1 << 41;
+        #[inline(never)]
+        const fn apart(second: f64, first: f64, by: u64) -> f64 {
+            let at = first.to_bits();
+            let is_near = at > 0 && at.abs_diff(second.to_bits()) < APART / 2;
+            if is_near { f64::from_bits(at.wrapping_add(by)) } else { second }
         }
-        let (first, mut second) = (self.actuator_lag, self.sensor_lag);
-        if are_near(first.least, second.least) {
-            second.least = first.least.min(second.least) * (1.0 - APART);
+        let (TimeRange { least, most }, first) = (self.sensor_lag, self.actuator_lag);
+        TimeRange {
+            least: apart(least, first.least, APART.wrapping_neg()),
+            most: apart(most, first.most, APART),
         }
-        if are_near(first.most, second.most) {
-            second.most = first.most.max(second.most) * (1.0 + APART);
-        }
-        [first, second]
     }
 
     /// The time from a count to the parts of its torque: the delay of the output plus the amplifier's

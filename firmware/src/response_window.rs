@@ -76,7 +76,7 @@ impl ResponseWindow {
             [Interval::decimal(latency.output_jitter), Interval::decimal(latency.count_jitter)];
         let jitter = jitters[0].add(jitters[1]).div(t);
         let both = jitters[0].min(jitters[1]).double().div(t);
-        let range = latency.lags();
+        let range = [latency.actuator_lag, latency.sensor_lag_apart()];
         let (least, most) = (
             End::of::<UPDATES>(t, latency, delay.least, [range[0].least, range[1].least]),
             End::of::<UPDATES>(t, latency, delay.most, [range[0].most, range[1].most]),

@@ -37,9 +37,9 @@ impl TimeRange {
         is_zero(self.least) && is_zero(self.most)
     }
 
-    /// Whether the time is exactly known.
+    /// Whether the time is exactly known, by its bits.
     pub const fn is_exact(self) -> bool {
-        self.least == self.most
+        self.least.to_bits() == self.most.to_bits()
     }
 
     /// The series of [`Latency::trails`](crate::latency::Latency::trails) for a lag.

@@ -80,6 +80,9 @@ pub struct Identification {
     pub responses: Vec<FrequencyPoint>,
     /// Tones of the record that were not used, and why.
     pub left_out: Vec<LeftOut>,
+    /// The largest slope of the encoder's error over the angle, where it is known: the encoder shows a velocity
+    /// that is larger or smaller by as much, and a damping that is smaller or larger.
+    pub linearity: f64,
 }
 
 impl Identification {
@@ -100,7 +103,8 @@ impl Identification {
     /// motor alone (theory, section 3.2), and where friction may be part of what looks like damping.
     pub fn passivity(&self) -> Option<f64> {
         let Estimate { value, lo, .. } = self.damping;
-        let passivity = value - BOUND * (value - lo) - self.motion_loss();
+        let damping = (value - BOUND * (value - lo)) * (1.0 - self.linearity);
+        let passivity = damping - self.motion_loss();
         (self.is_rigid() && self.tells_friction && passivity > 0.0).then_some(passivity)
     }
 }
@@ -169,6 +173,7 @@ pub fn identify(
         disk,
         bias: model.impedance(disk.omega).re - model.damping,
         misfit: profile.misfit,
+        linearity: 0.0,
         responses,
         left_out,
     })

@@ -77,7 +77,8 @@ fn only_a_chip_that_is_never_quiet_can_be_told_to_be_frozen() {
     let never_rest = Chip::ALL.map(|chip| chip.frozen() > 0);
     assert_eq!(never_rest, Chip::ALL.map(|chip| *chip != MT6701));
     // A tick with a step is not told.
-    let stops = |rests: &mut Rests, ticks: &[u32]| ticks.iter().position(|&tick| rests.take(tick, 3));
+    let stops =
+        |rests: &mut Rests, ticks: &[u32]| ticks.iter().position(|&tick| rests.take(tick, 3));
     let mut rests = Rests::default();
     assert_eq!(stops(&mut rests, &[3, 8, 9, 11, 12, 14, 16]), None);
     assert!(!rests.are(3));
@@ -89,7 +90,10 @@ fn only_a_chip_that_is_never_quiet_can_be_told_to_be_frozen() {
     // From any tick on, after 3 to 6 of them.
     for rested in 0..5_u32 {
         let mut rests = Rests::default();
-        assert_eq!(stops(&mut rests, &(10..10 + rested).map(|at| 2 * at).collect::<Vec<_>>()), None);
+        assert_eq!(
+            stops(&mut rests, &(10..10 + rested).map(|at| 2 * at).collect::<Vec<_>>()),
+            None
+        );
         let found = stops(&mut rests, &[100, 101, 102, 103, 104, 105]);
         assert!(found.is_some_and(|last| (2..6).contains(&last)), "{rested}: {found:?}");
     }

@@ -118,7 +118,10 @@ fn equal_lags_are_absorbed() {
     let of = |sensor_lag: f64, format| {
         let latency = Latency { sensor_lag: TimeRange::exactly(sensor_lag), ..Latency::NONE }
             .with_actuator_lag(TAU);
-        (latency.trails(), MatchedCoupling::of(1.0, None, 1.0, &latency, format).expect("a coupling"))
+        (
+            latency.trails(),
+            MatchedCoupling::of(1.0, None, 1.0, &latency, format).expect("a coupling"),
+        )
     };
     // Times `T / (2 delta)`.
     let rest = |t: f64| 0.5 * (2.0 * TAU + t) * (-t / TAU).exp();

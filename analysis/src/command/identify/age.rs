@@ -1,5 +1,7 @@
 //! The age of an encoder's readings, as far as a measurement tells it from other delays.
 
+use std::path::Path;
+
 use haptic_servo::magnetic::Transfers;
 use haptic_servo::scene::TimeRange;
 
@@ -89,6 +91,12 @@ pub fn stated(file: &str) -> Result<Option<TimeRange>, CommandError> {
     let age = device.reading.age;
     let of_chip = device.chip.map(|chip| chip.age_in(&Transfers::at_count(PERIOD)));
     Ok(if age.is_zero() { of_chip } else { Some(age) })
+}
+
+/// Whether a file has no chip that states an age: one within that is refused, as another chip of its kind may have any.
+pub fn is_free(path: Option<&Path>) -> bool {
+    let chip = |path: &Path| file::load_device(&path.to_string_lossy()).ok()?.chip;
+    path.and_then(chip).is_none()
 }
 
 /// An age for a file, rounded outwards: no reading is younger than its time.

@@ -52,7 +52,7 @@ pub fn run(
     let found = identify::linearity(&pair, [counts_per_turn, reference])?;
     let written = arguments.output.as_deref().map(Path::to_string_lossy);
     let stated = written.map(|file| age::stated(&file)).transpose()?.flatten();
-    let numbers = numbers(&found);
+    let numbers = numbers(&found, age::is_free(arguments.output.as_deref()));
     if let Some(path) = &arguments.output {
         write(path, &with_numbers(path, &numbers, counts_per_turn)?)?;
     }
@@ -72,7 +72,7 @@ pub fn run(
     Ok(CommandStatus::Success)
 }
 
-fn numbers(found: &Linearity) -> Vec<Number> {
+fn numbers(found: &Linearity, is_age_free: bool) -> Vec<Number> {
     let linearity = Number {
         table: "encoder",
         key: "linearity",
@@ -80,7 +80,7 @@ fn numbers(found: &Linearity) -> Vec<Number> {
         value: significant(found.slope.hi * (1.0 + 5e-3), 3),
         comment: "largest slope of the error, at 95 %".into(),
     };
-    let age = found.age.filter(|age| age.hi > 0.0).map(|age| age::number(&age));
+    let age = found.age.filter(|age| is_age_free && age.hi > 0.0).map(|age| age::number(&age));
     [Some(linearity), age].into_iter().flatten().collect()
 }
 

@@ -208,7 +208,8 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let settle = if origin.is_some() { 0.0 } else { SETTLE };
     let stated = arguments.reading.correction(counts_per_turn, settle);
     let correction = Correction { source: stated.source.or(torque_source), ..stated };
-    let found = identify::identify(&record, &correction)?;
+    let linearity = stated_linearity(arguments);
+    let found = Identification { linearity, ..identify::identify(&record, &correction)? };
     let notes = notes(&found);
     let delays = KnownDelays::of(arguments)?;
     let age = found.latency.ok().and_then(|latency| delays.age(&latency));
@@ -217,7 +218,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         Some(path) => device_file::replaced(path, &table, counts_per_turn)?,
         None => device_file(&table, counts_per_turn, full_scale),
     };
-    if let Some(age) = age {
+    if let Some(age) = age.filter(|_| age::is_free(arguments.output.as_deref())) {
         let path = arguments.output.as_deref().unwrap_or(Path::new("the device"));
         table = device_file::edited(path, &table, &[age::number(&age)])?;
     }
@@ -234,6 +235,17 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         eprintln!("{difference}");
     }
     Ok(CommandStatus::of(found.passivity().is_some() && differs.is_none()))
+}
+
+/// The largest nonlinearity of the encoder in the files that say something of it: a simulated device's, and that of
+/// which numbers are replaced.
+fn stated_linearity(arguments: &Arguments) -> f64 {
+    let files = [arguments.file.as_deref(), arguments.output.as_deref()];
+    let linearity = |path: &Path| {
+        let device = file::load_device(&path.to_string_lossy()).ok()?;
+        Some(device.reading.linearity)
+    };
+    files.into_iter().flatten().filter_map(linearity).fold(0.0, f64::max)
 }
 
 /// A record and its known properties.
@@ -496,6 +508,10 @@ fn device_table(found: &Identification, delays: &KnownDelays) -> String {
     let less = match found.motion_loss() {
         loss if loss > 0.0 => format!(" less {} by the current loop", significant(loss, 3)),
         _ => String::new(),
+    };
+    let less = match found.linearity {
+        linearity if linearity > 0.0 => format!(", times {}{less}", 1.0 - linearity),
+        _ => less,
     };
     let passivity = match found.passivity() {
         Some(passivity) => format!(
