@@ -27,7 +27,7 @@ sentences! {
     NotLate => ("the environment says that it is late, and its law is not"),
     Structure => ("the scene has other parts, delays or another coupling than this program"),
     NoMatchedCoupling => (
-        "no matched coupling exists: updates may be missed where torques lag, or a number is out of \
+        "there is no matched coupling for this latency: updates may be missed where torques lag, or a number is out of \
          range"),
     Turn { counts: f64, largest: f64 } => (
         "a turn has " {counts} " encoder counts, and a torque profile that repeats for ever needs a whole \
