@@ -150,7 +150,15 @@ fn peers_are_measured_in_the_same_run() {
         let mut figures = figures.as_array().unwrap().iter();
         figures.find(|figure| figure["name"].as_str().unwrap().ends_with(end)).unwrap()
     };
-    const JUDGED: &str = "; of 45: 0 wrong, 0 undecided, same run";
+    // An interior-point method ends without a verdict where the rounding of a machine's BLAS stops it.
+    fn judged<'a>(peer: &str, source: &'a str) -> Option<&'a str> {
+        let undecided = if peer == "python-control" { 0..5 } else { 0..1 };
+        let end = |undecided| format!("; of 45: 0 wrong, {undecided} undecided, same run");
+        match peer {
+            "scipy" => source.strip_suffix(", same run"),
+            _ => undecided.map(end).find_map(|end| source.strip_suffix(&end)),
+        }
+    }
     for (peer, package, method) in [
         ("numpy", "numpy ", ", companion matrix"),
         ("slycot", "slycot ", ", AB13DD"),
@@ -163,10 +171,10 @@ fn peers_are_measured_in_the_same_run() {
             Some(ratio) => {
                 let [value, against] = ["value", "against"].map(|key| row[key].as_f64().unwrap());
                 assert!(ratio > 0.0 && (ratio - value / against).abs() < 1e-12, "{row}");
-                let judged = if peer == "scipy" { ", same run" } else { JUDGED };
-                let version = source.strip_prefix(package).expect(source);
+                let about = judged(peer, source).expect(source);
+                let version = about.strip_prefix(package).expect(source);
                 assert!(version.starts_with(|first: char| first.is_ascii_digit()), "{source}");
-                assert!(version.ends_with(&format!("{method}{judged}")), "{source}");
+                assert!(version.ends_with(method), "{source}");
             }
             None => {
                 assert!(["slycot", "python-control"].contains(&peer), "{row}");
