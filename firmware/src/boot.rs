@@ -62,9 +62,9 @@ impl<E: Copy> Program<E> {
     /// # Errors
     /// The invalid number and its bound.
     pub const fn check(&self) -> Result<(), BuildError> {
-        let Scene { timing, torque_limit, .. } = self.scene;
+        let Scene { timing, torque_limit, latency, .. } = self.scene;
         ok!(period::check(timing.period));
-        ok!(self.transducers.check(timing, torque_limit));
+        ok!(self.transducers.check(timing, latency.encoder, torque_limit));
         ok!(BuildError::unless_positive("time of fading", self.rendering.fade));
         BuildError::unless_positive("link's timeout", self.options.link_timeout)
     }

@@ -5,6 +5,7 @@ use core::f64::consts::TAU;
 use crate::build_error::BuildError;
 use crate::dac::DacCode;
 use crate::encoder::CounterWidth;
+use crate::encoder_reading::EncoderReading;
 use crate::environment::Anticogging;
 use crate::number::Number;
 use crate::scene::Timing;
@@ -38,16 +39,21 @@ impl Transducers {
         Self { counts_per_turn, counter, full_scale_torque, largest_speed }
     }
 
-    /// Checks that a servo can run with them, this timing and this torque limit.
+    /// Checks that a servo can run with them, this timing, these readings and this torque limit.
     ///
     /// # Errors
     /// The invalid number and its bound.
-    pub const fn check(&self, timing: Timing, limit: Option<f64>) -> Result<(), BuildError> {
+    pub const fn check(
+        &self,
+        timing: Timing,
+        reading: &EncoderReading,
+        limit: Option<f64>,
+    ) -> Result<(), BuildError> {
         ok!(self.codes_per_torque());
         ok!(self.bound(limit));
         // The counter must not wrap undetected before missed ticks become a fault.
         let worst = or!(timing.worst_period, timing.period);
-        ok!(self.largest_step(worst));
+        ok!(self.largest_step(worst, reading));
         Ok(())
     }
 
@@ -63,13 +69,19 @@ impl Transducers {
         Ok(DacCode::CODES_TO_FULL_SCALE as f64 / full_scale)
     }
 
-    /// The largest number of counts that the encoder can move in `time` s, plus one for its edges; an error if the
-    /// counter could wrap undetected in that time.
-    pub(crate) const fn largest_step(&self, time: f64) -> Result<u32, BuildError> {
+    /// The largest number of counts between two readings in `time` s: the way of the device in that time, in which
+    /// readings may be dropped and one may be younger than the other, by the slope of the INL, and the error of two
+    /// readings at rest. An error if the counter could wrap undetected in that time.
+    pub(crate) const fn largest_step(
+        &self,
+        time: f64,
+        reading: &EncoderReading,
+    ) -> Result<u32, BuildError> {
         let speed = self.largest_speed;
         ok!(BuildError::unless_positive("largest speed", speed));
         let step = ok!(self.radians_per_count());
-        let counts = speed * time / step + 1.0;
+        let turned = time * (1.0 + reading.dropped as f64) + 2.0 * reading.deviation_of_age();
+        let counts = speed * turned * (1.0 + reading.linearity) / step + reading.steps();
         let half = 0.5 * self.counter.counts();
         // Written so that NaN is refused.
         if counts < half { Ok(counts as u32) } else { Err(BuildError::Speed { counts, half }) }
@@ -116,5 +128,23 @@ impl Transducers {
         let name = "torque limit in the servo's number format";
         BuildError::unless_positive(name, bound.to_f64())?;
         Ok(Limiter::new(bound, reason))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::time_range::TimeRange;
+
+    /// By hand: at 40 kHz 100 rad/s are 6.52 counts of 16384 in a turn.
+    #[test]
+    fn a_step_has_room_for_the_errors_of_two_readings() {
+        let transducers = Transducers::of(16384.0, 1.0);
+        let step = |reading| transducers.largest_step(2.5e-5, &reading);
+        let ideal = EncoderReading::IDEAL;
+        let noisy = EncoderReading { noise: 2.0, hysteresis: 3.0, ..ideal };
+        let aged = EncoderReading { age: TimeRange::between(1e-5, 3.5e-5), ..ideal };
+        let dropping = EncoderReading { dropped: 2, linearity: 0.1, ..ideal };
+        assert_eq!([ideal, noisy, aged, dropping].map(step), [Ok(7), Ok(14), Ok(14), Ok(22)]);
     }
 }

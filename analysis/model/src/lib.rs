@@ -57,6 +57,7 @@ pub mod worst_hand;
 
 // Input: a scene, its device, its hand and its servo.
 pub mod chain;
+pub mod chip_on_board;
 pub mod controller;
 pub mod device;
 pub mod disturbance;

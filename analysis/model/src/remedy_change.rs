@@ -40,6 +40,7 @@ fn changes(file: &SceneFile, remedy: &Remedy) -> Vec<(&'static str, Value)> {
     let value = value
         .filter(|&value| remedy.parameter != Parameter::Passivity || is_passivity(file, value));
     let changed = path.zip(value).map(|(path, value)| (path, json!(value)));
+    let age = value.and_then(|value| age_beside(file, remedy.parameter, value));
     let removed = match remedy.parameter {
         // A matched coupling takes no stiffness; without a type it is a spring.
         Parameter::CouplingStiffness => Some(key::COUPLING_TYPE.path),
@@ -47,7 +48,15 @@ fn changes(file: &SceneFile, remedy: &Remedy) -> Vec<(&'static str, Value)> {
         _ => None,
     };
     let removed = removed.filter(|_| changed.is_some()).map(|path| (path, Value::Null));
-    removed.into_iter().chain(changed).collect()
+    removed.into_iter().chain(changed).chain(age).collect()
+}
+
+/// The other age that the chip of an encoder has beside another value of a number.
+fn age_beside(file: &SceneFile, parameter: Parameter, value: f64) -> Option<(&'static str, Value)> {
+    let other = file.scene.with(parameter, value)?;
+    let age = file.chip_on_board()?.age_in(&file.scene, &other);
+    let is_other = age != file.scene.latency.encoder.age;
+    is_other.then(|| (key::AGE.path, json!([age.least, age.most])))
 }
 
 /// The key of a number; `None` where the file has another number in its place.
@@ -198,6 +207,22 @@ mod tests {
             seen += each_certifies(&text)[0];
         }
         assert!(seen > 100 && on_a_board > 5, "{seen} {on_a_board}");
+    }
+
+    /// An AS5048A reads what it has sampled a period before.
+    #[test]
+    fn another_period_has_the_age_of_the_chip() {
+        let text = "name = \"a\"\n[device]\ninertia = 3e-5\ndamping = 0.001\n[servo]\nrate = 1000\n\
+                    [encoder]\nchip = \"as5048a\"\nage = [0.00107, 0.0012]\nnoise = 10\n\
+                    [environment]\ntype = \"delayed-spring\"\nstiffness = 0.45\ndelay = 1\n\
+                    [limits]\nfull_scale = 2.0\n";
+        let [changing, all] = each_certifies(text);
+        assert_eq!(changing, all);
+        let file = parse("a.toml", Format::Toml, text).unwrap();
+        let changes = remedy_changes(&file, &judge_file(&file, NumberFormat::F64));
+        let keys = |change: &RemedyChange| change.changes.iter().map(|it| it.0).collect::<Vec<_>>();
+        let period = [key::RATE.path, key::PERIOD.path, key::AGE.path];
+        assert!(changes.iter().any(|change| keys(change) == period), "{changes:?}");
     }
 
     #[test]

@@ -316,7 +316,7 @@ macro_rules! encoder_checked {
 #[macro_export]
 macro_rules! transfers_of {
     ($chip:expr, [], $period:expr) => {
-        $crate::magnetic::Transfers::at_count($period)
+        $crate::magnetic::Transfers::at_count(&$chip, $period)
     };
     ($chip:expr, [$current_loop:ident], $period:expr) => {
         $current_loop.transfers(&$chip)

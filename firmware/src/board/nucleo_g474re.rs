@@ -36,6 +36,10 @@ pub const CLOCK: pac::timer::TimGp32 = pac::TIM5;
 /// the amplifier's input needs a pull-down resistor.
 pub const AMPLIFIER: OutputPin = OutputPin { port: pac::GPIOB, pin: 10 };
 
+// The certificate's phases leave room for transfers at this clock.
+#[cfg(feature = "magnetic")]
+const _: () = assert!(TIMER_CLOCK == crate::magnetic::AT_COUNT_CLOCK);
+
 /// The bus of a magnetic encoder: SPI2 on the morpho header, which the DAC, the LED and the serial port leave free
 /// (alternate functions by DS12288, requests of the DMA by RM0440's table of the multiplexer).
 #[cfg(feature = "magnetic")]

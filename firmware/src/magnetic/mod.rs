@@ -28,7 +28,7 @@ pub use magalpha::{MA600, MA702, MA732};
 pub use mt6701::MT6701;
 pub use mt6835::MT6835;
 pub use readings::{Readings, Receiver, Rests, Unread};
-pub use transfers::{RISE, TRANSFER_WITHIN, Transfers};
+pub use transfers::{AT_COUNT_CLOCK, RISE, TRANSFER_WITHIN, Transfers};
 
 use crate::encoder::CounterWidth;
 use crate::latency::Latency;
@@ -189,7 +189,7 @@ impl Chip {
     /// The age of a reading at the instant of its count, by the board's transfers.
     pub const fn age_in(&self, transfers: &Transfers) -> TimeRange {
         let TimeRange { least, most } = self.age;
-        let Transfers { interval, begins, ends } = *transfers;
+        let Transfers { interval, begins, ends, .. } = *transfers;
         if self.is_period_late {
             return TimeRange::between(least + interval + ends.least, most + interval + ends.most);
         }
@@ -221,6 +221,10 @@ impl Chip {
             let TimeRange { least, most } = lag;
             return Err(ChipError::Lag { chip, least, most, from: stated.least, to: stated.most });
         }
+        let (phase, shortest) = (latency.stated_delay(), transfers.shortest_phase());
+        if transfers.waits > 0.0 && phase > 0.0 && phase < shortest - ROUNDED {
+            return Err(ChipError::Phase { chip, phase, shortest });
+        }
         Ok(())
     }
 
@@ -244,9 +248,11 @@ impl PartialEq for Chip {
     }
 }
 
-/// Whether a stated range has the whole of another, within the rounding of decimal digits.
+/// The rounding of times in decimal digits, in s.
+const ROUNDED: f64 = 1e-9;
+
+/// Whether a stated range has the whole of another.
 const fn covers(stated: TimeRange, actual: TimeRange) -> bool {
-    const ROUNDED: f64 = 1e-9;
     stated.least <= actual.least + ROUNDED && stated.most >= actual.most - ROUNDED
 }
 
@@ -261,6 +267,9 @@ sentences! {
     Lag { chip: &'static str, least: f64, most: f64, from: f64, to: f64 } => (
         "the filter of " {chip} " has a time constant between " {least} " and " {most} " s, and the scene states a \
          lag between " {from} " and " {to} " s: state a lag that covers it"),
+    Phase { chip: &'static str, phase: f64, shortest: f64 } => (
+        "the scene puts a torque out " {phase} " s after its count, and a board that waits for the transfer of " {chip}
+         " needs " {shortest} " s"),
     }
 }
 

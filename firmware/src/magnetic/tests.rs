@@ -105,7 +105,7 @@ fn a_scene_states_an_age_that_covers_the_chip_s() {
         let age = TimeRange::between(least, most);
         let encoder = EncoderReading { age, ..EncoderReading::IDEAL };
         let latency = Latency::NONE.read_by(Box::leak(Box::new(encoder)));
-        let transfers = Transfers::at_count(1e-4);
+        let transfers = Transfers::at_count(chip, 1e-4);
         chip.check(&latency, &transfers, 16384.0)
             .map_err(|error| error.sentence().as_str().to_owned())
     };
@@ -118,6 +118,20 @@ fn a_scene_states_an_age_that_covers_the_chip_s() {
     assert!(check(&AS5048A, 9.1e-5, 1.99e-4).is_err());
     let error = check(&MA702, 0.0, 1e-4).unwrap_err();
     assert_eq!(error, "the encoder has 16384 counts in a turn, and ma702 has 65536");
+}
+
+/// By hand: 24 bits of an MT6701 at 170 MHz/32 take 4.518 us, beside the 5 us of a tick.
+#[test]
+fn a_phase_has_room_for_the_transfer() {
+    let check = |delay: f64| {
+        let age = TimeRange::between(0.0, 1e-5);
+        let encoder = Box::leak(Box::new(EncoderReading { age, ..EncoderReading::IDEAL }));
+        let latency = Latency::delayed(delay).read_by(encoder);
+        MT6701.check(&latency, &Transfers::at_count(&MT6701, 1e-4), 16384.0)
+    };
+    assert_eq!([check(0.0), check(9.52e-6), check(9e-5)], [Ok(()); 3]);
+    let Err(ChipError::Phase { shortest, .. }) = check(9.5e-6) else { panic!("it has room") };
+    assert!((shortest - 9.518e-6).abs() < 1e-15, "{shortest}");
 }
 
 /// By hand: 24 bits of an MT6701 at 170 MHz/32 are 768 counts, and a us more are 938; an AS5048A was released

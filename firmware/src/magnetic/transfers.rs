@@ -2,6 +2,7 @@
 
 use super::Chip;
 use crate::encoder_reading::EncoderReading;
+use crate::output_timing::SHORTEST_PHASE;
 use crate::time_range::TimeRange;
 
 /// The times of a board's transfers.
@@ -13,7 +14,12 @@ pub struct Transfers {
     pub begins: TimeRange,
     /// Time in s from its end, where the chip sees that it is released, to that instant; negative for an end after it.
     pub ends: TimeRange,
+    /// Time in s of its bits after that instant, for which the tick waits.
+    pub waits: f64,
 }
+
+/// The clock in Hz of the SPI of a board whose transfers begin at the counts.
+pub const AT_COUNT_CLOCK: f64 = 170e6;
 
 /// The longest time in s of a transfer that begins at its count, from there to its end.
 pub const TRANSFER_WITHIN: f64 = 1e-5;
@@ -27,11 +33,12 @@ const MARGIN: f64 = 1e-6;
 
 impl Transfers {
     /// One in each period in s of the servo, from its count on.
-    pub const fn at_count(period: f64) -> Self {
+    pub const fn at_count(chip: &Chip, period: f64) -> Self {
         Self {
             interval: period,
             begins: TimeRange::ZERO,
             ends: TimeRange::between(-TRANSFER_WITHIN - RISE, 0.0),
+            waits: chip.interface.clocks(AT_COUNT_CLOCK) as f64 / AT_COUNT_CLOCK,
         }
     }
 
@@ -41,7 +48,13 @@ impl Transfers {
         let bits = chip.interface.clocks(clock) as f64 / clock;
         let lead = Self::lead_counts(chip, clock) as f64 / clock;
         let ends = TimeRange::between(-RISE, lead - bits);
-        Self { interval, begins: TimeRange::between(bits, lead), ends }
+        Self { interval, begins: TimeRange::between(bits, lead), ends, waits: 0.0 }
+    }
+
+    /// The shortest phase in s of a torque in the period of its count, in whole nanoseconds.
+    pub const fn shortest_phase(&self) -> f64 {
+        // The cast rounds down.
+        (((SHORTEST_PHASE + self.waits) * 1e9) as u32 + 1) as f64 / 1e9
     }
 
     /// Counts of a timer with the SPI's clock in Hz by which such a transfer begins before its update.

@@ -238,8 +238,9 @@ impl TimingLimits {
         let periods = worst / timing.period + 1e-9;
         let tolerated = (periods as u32).saturating_sub(1);
         // The counter must not wrap undetected before the missed ticks become a fault.
-        transducers.largest_step(worst)?;
-        let largest_step = transducers.largest_step(timing.period)?;
+        let reading = scene.latency.encoder;
+        transducers.largest_step(worst, reading)?;
+        let largest_step = transducers.largest_step(timing.period, reading)?;
         // Below half the counter's range, so that twice the value fits.
         let stretch = (worst / timing.period) as f32;
         let span = 2 * largest_step;

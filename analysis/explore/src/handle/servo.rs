@@ -65,7 +65,7 @@ pub fn certified(
     transducers: &Transducers,
 ) -> Result<Box<dyn Controller>, String> {
     transducers
-        .check(file.scene.timing, file.scene.torque_limit)
+        .check(file.scene.timing, file.scene.latency.encoder, file.scene.torque_limit)
         .map_err(|error| error.to_string())?;
     assess(&file.scene).outcome.map_err(|rejection| rejection.to_string())?;
     let certified = file.scene.certify().map_err(|rejection| rejection.to_string())?;

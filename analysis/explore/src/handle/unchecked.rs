@@ -30,7 +30,7 @@ impl Unchecked {
     /// # Errors
     /// If coupling and environment have no unique solution, or no law.
     pub fn new(scene: &Scene, transducers: &Transducers) -> Result<Self, BuildError> {
-        transducers.check(scene.timing, scene.torque_limit)?;
+        transducers.check(scene.timing, scene.latency.encoder, scene.torque_limit)?;
         let full_scale = transducers.full_scale_torque;
         let torque_limit = Some(scene.torque_limit.unwrap_or(full_scale));
         let has_limit = scene.torque_limit.is_some();

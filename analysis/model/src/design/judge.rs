@@ -6,6 +6,7 @@ use haptic_servo::period;
 use haptic_servo::scene::Scene;
 
 use super::quantity::Quantity;
+use crate::file::is_beyond_longest;
 use crate::on_board::{self, Refusal};
 
 /// The judge of each value of a design.
@@ -24,6 +25,9 @@ impl Judge {
 
     /// Whether a scene passes.
     pub fn passes(self, scene: &Scene) -> bool {
+        if is_beyond_longest(&scene.latency, scene.timing.period) {
+            return false;
+        }
         let is_certified = PassivityProblem::of(scene).is_ok_and(|posed| posed.is_certified());
         match self {
             Self::Certificate => is_certified,

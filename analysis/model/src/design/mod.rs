@@ -14,6 +14,7 @@ use haptic_servo::environment::MAX_DELAY;
 use haptic_servo::scene::{Coupling, Scene, TimeRange};
 
 use crate::chain::Chain;
+use crate::chip_on_board::{ChipOnBoard, with_age};
 use crate::file::SceneFile;
 
 pub use detents::NoDetents;
@@ -279,10 +280,10 @@ pub fn rate(files: &[SceneFile], terms: &Terms) -> DesignLimit<Vec<SceneFile>> {
     timed(files, terms, rates.fold(0.0, f64::max), 0.5, f64::recip)
 }
 
-/// The scene at another period in s, with the same number of missed updates, and as many updates of the
-/// amplifier in a period.
-fn at_period(scene: &Scene, period: f64) -> Scene {
-    let (mut scene, before) = (*scene, scene.timing.period);
+/// The scene at another period in s, with the same number of missed updates, as many updates of the amplifier in a
+/// period, and the age that the chip of its encoder has there.
+fn at_period(of: &Scene, chip: Option<ChipOnBoard>, period: f64) -> Scene {
+    let (mut scene, before) = (*of, of.timing.period);
     let worst = scene.timing.worst_period.map(|worst| worst / before);
     scene.timing.period = period;
     scene.timing.worst_period = worst.map(|ratio| (ratio * period).max(period));
@@ -291,6 +292,9 @@ fn at_period(scene: &Scene, period: f64) -> Scene {
         let delay = scene.latency.delay_at_update(update, period);
         let age = scene.latency.encoder.age.middle();
         scene.latency.output_delay = TimeRange::exactly(delay + age);
+    }
+    if let Some(chip) = chip {
+        scene.latency = with_age(&scene.latency, chip.age_in(of, &scene));
     }
     scene
 }
@@ -303,13 +307,15 @@ fn timed(
     outward: f64,
     period_of: fn(f64) -> f64,
 ) -> DesignLimit<Vec<SceneFile>> {
-    let with = |scene: &Scene, period: f64| prepared(&at_period(scene, period), terms);
+    let with = |file: &SceneFile, period: f64| {
+        prepared(&at_period(&file.scene, file.chip_on_board(), period), terms)
+    };
     let passes = |scene: &Scene| terms.judge.passes(scene);
-    let fits = |number: f64| files.iter().all(|file| passes(&with(&file.scene, period_of(number))));
+    let fits = |number: f64| files.iter().all(|file| passes(&with(file, period_of(number))));
     let at = |number: f64| -> Vec<SceneFile> {
         let period = period_of(number);
         let timed = |file: &SceneFile| {
-            let mut timed = SceneFile { scene: with(&file.scene, period), ..file.clone() };
+            let mut timed = SceneFile { scene: with(file, period), ..file.clone() };
             if let Some(simulation) = &mut timed.simulation {
                 simulation.latency *= period / file.scene.timing.period;
             }

@@ -13,6 +13,7 @@ use haptic_servo::scene::{Coupling, EncoderReading, Latency, Scene, TimeRange};
 
 use super::edge::{Edge, edge, inward};
 use super::{Choice, Judge, Terms, at_period, prepared};
+use crate::chip_on_board::{ChipOnBoard, reread, with_age};
 use crate::felt;
 use crate::file::SceneFile;
 use crate::quantity::rounded;
@@ -85,6 +86,8 @@ pub struct Search {
     shortest_period: f64,
     /// The steps of the device, with its friction.
     pub(super) steps: Resolution,
+    /// The chip of its encoder.
+    chip: Option<ChipOnBoard>,
     /// Whether the friction has to prevent a limit cycle at rest, as in the scene of the file.
     rests: bool,
 }
@@ -92,7 +95,7 @@ pub struct Search {
 /// A change of the device or the board, which cannot be made in the scene.
 type Lever = (&'static str, fn(&Search) -> Option<Search>);
 
-const LEVERS: [Lever; 8] = [
+const LEVERS: [Lever; 9] = [
     (Search::FASTER_BOARD, |search| {
         let shortest_period = 0.5 * search.shortest_period;
         Some(Search { shortest_period, ..search.clone() })
@@ -115,10 +118,17 @@ const LEVERS: [Lever; 8] = [
         more.scene.device.passivity = more.scene.device.passivity.map(|passivity| 1.2 * passivity);
         Some(more)
     }),
-    ("an encoder with four times the counts", |search| {
+    ("20 % more friction", |search| {
+        let friction = search.steps.friction.filter(|_| search.rests).map(|torque| 1.2 * torque);
+        let steps = Resolution { friction: Some(friction?), ..search.steps };
+        Some(Search { steps, ..search.clone() })
+    }),
+    ("an encoder with four times the counts and the same noise", |search| {
         let encoder = search.steps.encoder.filter(|_| search.rests).map(|step| 0.25 * step)?;
         let steps = Resolution { encoder: Some(encoder), ..search.steps };
-        Some(Search { steps, ..search.clone() })
+        let finer = Search { steps, ..search.clone() };
+        // Noise and hysteresis are in counts.
+        Some(finer.with_encoder(quadruple).unwrap_or(finer))
     }),
     ("no missed updates", |search| {
         let mut punctual = search.clone();
@@ -132,6 +142,13 @@ const LEVERS: [Lever; 8] = [
 fn halve(number: &mut f64) -> bool {
     *number *= 0.5;
     *number > 0.0
+}
+
+/// Makes noise and hysteresis four times as many counts; whether that changes them.
+fn quadruple(encoder: &mut EncoderReading) -> bool {
+    encoder.noise *= 4.0;
+    encoder.hysteresis *= 4.0;
+    encoder.noise + encoder.hysteresis > 0.0
 }
 
 /// Halves a time; whether that changes it.
@@ -168,6 +185,7 @@ impl Search {
             terms: *terms,
             shortest_period: period::SHORTEST,
             steps: file.steps(),
+            chip: file.chip_on_board(),
             rests: false,
         };
         // The updates and the delay of a bridge's current loop are the search's, not the file's.
@@ -227,13 +245,9 @@ impl Search {
 
     fn with_encoder(&self, change: fn(&mut EncoderReading) -> bool) -> Option<Self> {
         let mut encoder = *self.scene.latency.encoder;
-        let before = encoder.deviation_of_age();
         change(&mut encoder).then(|| {
             let mut changed = self.clone();
-            let latency = &mut changed.scene.latency;
-            latency.count_jitter -= before - encoder.deviation_of_age();
-            // A scene refers to it.
-            latency.encoder = Box::leak(Box::new(encoder));
+            changed.scene.latency = reread(&changed.scene.latency, encoder);
             changed
         })
     }
@@ -304,11 +318,19 @@ impl Search {
         damper: Option<Damper>,
     ) -> Option<Scene> {
         let Structure { coupling, is_latched } = structure;
-        let mut scene = at_period(&self.scene, period);
+        let mut scene = at_period(&self.scene, self.chip, period);
         let Environment::Parts(parts) = &mut scene.environment else { return None };
         let delay = usize::from(is_latched);
         parts.wall.as_mut()?.damper = damper;
         parts.set_wall_delay(delay);
+        if scene.latency.actuator_updates > 0 {
+            scene.latency.actuator_updates =
+                PwmTiming::of(period, B_G431B_ESC1.clock).ok()?.updates;
+        }
+        if let Some(chip) = self.chip {
+            scene.latency = with_age(&scene.latency, chip.age_in(&self.scene, &scene));
+        }
+        let transfers = self.chip.map(|chip| chip.transfers(&scene));
         let latency = &mut scene.latency;
         let encoder = latency.encoder;
         if encoder.window > 0.0 {
@@ -316,14 +338,14 @@ impl Search {
         }
         (latency.output_jitter, latency.count_jitter) = (0.0, 0.0);
         if latency.actuator_updates > 0 {
-            latency.actuator_updates = PwmTiming::of(period, B_G431B_ESC1.clock).ok()?.updates;
             let update = if is_latched { 1 } else { 2 };
             latency.output_delay = TimeRange::exactly(latency.delay_at_update(update, period));
         } else {
-            let delay = if is_latched { 0.0 } else { SHORTEST_PHASE };
-            latency.output_delay = TimeRange::exactly(delay);
+            let phase = transfers.map_or(SHORTEST_PHASE, |transfers| transfers.shortest_phase());
+            latency.output_delay = TimeRange::exactly(if is_latched { 0.0 } else { phase });
             if !latency.is_none() || !encoder.age.is_zero() {
-                let jitter = self.scene.latency.total_jitter() - encoder.deviation_of_age();
+                let own = &self.scene.latency;
+                let jitter = own.total_jitter() - own.encoder.deviation_of_age();
                 // Beside a varying age it is that of the counts, too.
                 let of_counts = encoder.deviation_of_age() > 0.0;
                 let place = match of_counts {

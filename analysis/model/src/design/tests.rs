@@ -297,3 +297,39 @@ fn the_stiffest_wall_certifies_is_stiffer_and_more_damping_buys_more() {
         assert!((1.18..1.22).contains(&factor), "{factor}");
     }
 }
+
+/// A device that a board reads by a chip, at the counts or at the updates of its bridge: a reader refuses an age that
+/// is not the chip's, and a phase in which its transfer does not end.
+#[test]
+fn what_a_design_writes_for_a_chip_is_read_again() {
+    const DRIVEN: &str = "[supply]\nsinks = true\nlargest_speed = 25\n[motor]\npole_pairs = 7\nresistance = 0.3\ninductance = 1e-4\n\
+                          torque_constant = 0.05\nlowest_supply = 20\nhighest_supply = 25.2\n";
+    let bridge = "actuator_lag = 1.6e-4\nactuator_updates = 20";
+    for (chip, age, bridge, output, driven) in [
+        ("mt6701", "[0.0, 1e-5]", "", "", ""),
+        ("as5048a", "[5.71e-4, 7.0e-4]", "", "", ""),
+        ("as5047p", "[5.6e-4, 6.12e-4]", "", "", ""),
+        ("as5048a", "[1.0e-4, 2.3e-4]", bridge, "output_delay = 2.5e-5", DRIVEN),
+    ] {
+        let text = format!(
+            "name = \"a\"\n[device]\ninertia = 3e-5\ndamping = 0.003\npassivity = 0.0029\nfriction = 0.01\n\
+             {bridge}\n[servo]\nrate = 2000\n{output}\n[encoder]\nchip = \"{chip}\"\nage = {age}\nnoise = 2\n\
+             [environment]\ntype = \"damper-wall\"\nstiffness = 0.8\ndamping = 0.0\ndelay = 1\n\
+             [limits]\ntorque = 0.2\nfull_scale = 0.3\n{driven}"
+        );
+        let file = parse("a.toml", Format::Toml, &text).unwrap_or_else(|error| panic!("{error}"));
+        let terms = Terms { judge: Judge::BOARD, exact: false, ..Terms::default() };
+        let found = stiffest::Search::new(&file, &terms).unwrap().run(|| {}).unwrap();
+        let mut phases = 0;
+        for wall in [found.best].into_iter().chain(found.walls) {
+            let again = read(&SceneFile { scene: wall.scene, ..file.clone() });
+            assert_eq!(again.latency, wall.scene.latency);
+            phases += usize::from(again.latency.code_delay(again.timing.period) > 0.0);
+        }
+        assert!(phases > 0);
+        if bridge.is_empty() {
+            let (_, slow) = limit(period(std::slice::from_ref(&file), &terms));
+            assert!(passes(&read(&slow[0])) && slow[0].scene.timing.period > 5e-4);
+        }
+    }
+}

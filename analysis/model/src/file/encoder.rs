@@ -3,15 +3,15 @@
 use std::f64::consts::TAU;
 
 use haptic_servo::certificate::is_static_at_port;
-use haptic_servo::current::B_G431B_ESC1;
 use haptic_servo::latency::LONGEST_DELAY;
-use haptic_servo::magnetic::{Chip, Transfers};
+use haptic_servo::magnetic::Chip;
 use haptic_servo::scene::{EncoderReading, Latency, Scene, TimeRange};
 
 use super::faults::{Read, Reported};
 use super::key;
 use super::section::Section;
 use super::transducers::counts_per_turn_of;
+use crate::chip_on_board::ChipOnBoard;
 
 /// The contents of `[encoder]`.
 pub struct EncoderTable {
@@ -80,17 +80,11 @@ impl EncoderTable {
         top: &Section<'_>,
         scene: &Scene,
         step: Option<f64>,
-        has_motor: bool,
+        has_bridge: bool,
     ) -> Read<()> {
         let (Some(chip), Some(step)) = (self.chip, step) else { return Ok(()) };
-        let (counts, period) = (counts_per_turn_of(step), scene.timing.period);
-        let transfers = match f64::from(scene.latency.actuator_updates) {
-            updates if has_motor && updates > 0.0 => {
-                Transfers::before_update(chip, period / updates, B_G431B_ESC1.clock)
-            }
-            _ => Transfers::at_count(period),
-        };
-        chip.check(&scene.latency, &transfers, counts)
+        ChipOnBoard { chip, has_bridge }
+            .check(scene, counts_per_turn_of(step))
             .map_err(|error| top.conflict(&key::CHIP, format!("has no certificate: {error}")))?;
         match chip.frozen_after {
             Some(equal) if self.reading.noise < 1.0 => {
@@ -115,6 +109,15 @@ impl EncoderTable {
         let reading = EncoderReading { friction, ..self.reading };
         // A scene refers to it, as to the table of a torque profile.
         let read = latency.read_by(Box::leak(Box::new(reading)));
+        if is_beyond_longest(&read, scene.timing.period) {
+            let reason = format!(
+                "and `{}` are together more than {LONGEST_DELAY} times `{}` = {} s",
+                key::OUTPUT_DELAY.path,
+                key::PERIOD.path,
+                scene.timing.period
+            );
+            return Err(top.conflict(&key::AGE, reason));
+        }
         let mut scene = Scene { latency: read, ..scene };
         if reading.dropped > 0 && !is_static_at_port(&scene) {
             if latency.actuator_updates > 0 {
@@ -136,7 +139,7 @@ impl EncoderTable {
     /// The times of the scene with the encoder's filter, beside which the age may stand.
     fn within(&self, top: &Section<'_>, scene: &Scene) -> Read<Latency> {
         let (mut latency, period) = (scene.latency, scene.timing.period);
-        let EncoderReading { age, window, .. } = self.reading;
+        let window = self.reading.window;
         let beside = |key: &key::Key, other: &key::Key| {
             Err(top.conflict(key, format!("stands beside `{}`", other.path)))
         };
@@ -166,16 +169,14 @@ impl EncoderTable {
         if window > 0.0 && latency.actuator_updates > 0 {
             return beside(&key::WINDOW, &key::ACTUATOR_UPDATES);
         }
-        if latency.output_delay.most + age.most > LONGEST_DELAY * period {
-            let reason = format!(
-                "and `{}` are together more than {LONGEST_DELAY} times `{}` = {period} s",
-                key::OUTPUT_DELAY.path,
-                key::PERIOD.path
-            );
-            return Err(top.conflict(&key::AGE, reason));
-        }
         Ok(latency)
     }
+}
+
+/// Whether a torque may begin later after its position than any certificate covers at this period in s.
+pub fn is_beyond_longest(latency: &Latency, period: f64) -> bool {
+    let most = latency.output_delay.most + latency.encoder.deviation_of_age();
+    most > LONGEST_DELAY * period
 }
 
 #[cfg(test)]

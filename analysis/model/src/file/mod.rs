@@ -49,6 +49,7 @@ use std::path::Path;
 
 pub use device::Purpose;
 pub use device_file::DeviceFile;
+pub use encoder::is_beyond_longest;
 pub use named_device::naming;
 pub use plausible::warnings;
 pub use problem::{FileError, Problem, excerpt};

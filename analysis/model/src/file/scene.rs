@@ -23,6 +23,7 @@ use super::supply::{FileSupply, supply};
 use super::tree::{Node, Value};
 use super::updates;
 use crate::chain::Chain;
+use crate::chip_on_board::ChipOnBoard;
 use crate::device::Hand;
 use crate::disturbance::{Cogging, Disturbance};
 use crate::hand::HandTrajectory;
@@ -69,6 +70,11 @@ impl SceneFile {
             friction: self.friction.unwrap_or(0.0),
             cogging: self.cogging.unwrap_or_default(),
         }
+    }
+
+    /// The chip of its encoder, as the board of its motor reads it.
+    pub fn chip_on_board(&self) -> Option<ChipOnBoard> {
+        Some(ChipOnBoard { chip: self.chip?, has_bridge: self.motor.is_some() })
     }
 
     /// Readings of its encoder that fail in a simulation.

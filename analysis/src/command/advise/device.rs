@@ -166,9 +166,9 @@ fn with_wall(mut file: SceneFile) -> SceneFile {
 
 /// Checks what no scene on this device changes: a period, a torque limit and counts that a board has.
 fn on_a_board(file: &SceneFile) -> Result<(), BuildError> {
-    let Scene { timing, torque_limit, .. } = file.scene;
+    let Scene { timing, torque_limit, latency, .. } = file.scene;
     period::check(timing.period)?;
-    file.transducers(None, None).check(timing, torque_limit)
+    file.transducers(None, None).check(timing, latency.encoder, torque_limit)
 }
 
 fn report(file: &SceneFile, search: &Search) -> Report {
@@ -211,7 +211,7 @@ fn report(file: &SceneFile, search: &Search) -> Report {
         detents,
         detent_torque: detents.map(|_| torque),
         no_detents: no_detents.map(|why| why.to_string()),
-        compensated: compensated(file),
+        compensated: compensated(file, best.as_ref().map_or(&file.scene, |wall| &wall.scene)),
         missing: missing(file),
         no_bridge: best.as_ref().and_then(|wall| of_wall(wall).own_bridge().err()),
         levers: levers(silent.as_ref().unwrap_or(search), period),
@@ -243,9 +243,9 @@ fn detent_torque(file: &SceneFile) -> f64 {
     2.0 * (friction + (1.0 - opposed) * cogging.torque())
 }
 
-/// The part of the cogging that can be opposed with all of the device's passivity: of the learnt map, or of the
-/// stated cogging on a map that has 16 angles or more in a period of it.
-fn compensated(file: &SceneFile) -> Option<f64> {
+/// The part of the cogging that can be opposed with all of the device's passivity and the times of a scene: of the
+/// learnt map, or of the stated cogging on a map that has 16 angles or more in a period of it.
+fn compensated(file: &SceneFile, scene: &Scene) -> Option<f64> {
     let learnt = match (file.scene.environment.parts().anticogging, file.cogging) {
         (Some(learnt), _) => learnt,
         (None, Some(cogging)) => {
@@ -254,10 +254,11 @@ fn compensated(file: &SceneFile) -> Option<f64> {
         }
         (None, None) => return None,
     };
+    let delay = scene.environment.wall().map_or(1, |wall| wall.delay);
     let passes = |share: f64| {
-        let environment = Wall::spring(0.0, 1).alone().beside(learnt.sharing(share));
-        let needed = passivity_for_anticogging(&Scene { environment, ..file.scene }, Format::F64);
-        needed.is_some_and(|needed| needed < file.scene.device.passivity())
+        let environment = Wall::spring(0.0, delay).alone().beside(learnt.sharing(share));
+        let needed = passivity_for_anticogging(&Scene { environment, ..*scene }, Format::F64);
+        needed.is_some_and(|needed| needed < scene.device.passivity())
     };
     if passes(1.0) {
         return Some(1.0);

@@ -89,7 +89,7 @@ impl KnownDelays {
 pub fn stated(file: &str) -> Result<Option<TimeRange>, CommandError> {
     let device = file::load_device(file)?;
     let age = device.reading.age;
-    let of_chip = device.chip.map(|chip| chip.age_in(&Transfers::at_count(PERIOD)));
+    let of_chip = device.chip.map(|chip| chip.age_in(&Transfers::at_count(chip, PERIOD)));
     Ok(if age.is_zero() { of_chip } else { Some(age) })
 }
 

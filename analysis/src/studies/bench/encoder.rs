@@ -32,7 +32,7 @@ pub const CHIPS: [(&Chip, u32); 4] = [(&MT6701, 2), (&MA702, 2), (&MT6835, 10), 
 pub fn wall(chip: &Chip, noise: u32) -> Result<SceneFile, FileError> {
     const WALL: &str = include_str!("../../../virtual-board/tests/board/magnetic_wall.toml");
     const PERIOD: f64 = 1e-3;
-    let TimeRange { least, most } = chip.age_in(&Transfers::at_count(PERIOD));
+    let TimeRange { least, most } = chip.age_in(&Transfers::at_count(chip, PERIOD));
     let (name, lag) = (chip.name, chip.lag.most);
     let mut text = WALL.to_owned();
     for (line, chip_s) in [
