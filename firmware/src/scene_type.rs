@@ -119,7 +119,10 @@ impl<S: SceneType> EnvironmentModel for Typed<S> {
     const IS_SUM: bool = true;
     const PROFILE: ProfileUse = ProfileUse::of(&Self::LIKE);
     const MEMORY: Memory = Memory::of(S::CERTIFIED.scene());
-    const MAY_MISREAD: bool = !S::CERTIFIED.scene().latency.encoder.is_ideal();
+    const MAY_MISREAD: bool = {
+        let encoder = S::CERTIFIED.scene().latency.encoder;
+        !encoder.is_ideal() || encoder.steps() > 1.0
+    };
 
     fn as_data(&self, _: &LawContext) -> Environment {
         Environment::Parts(self.parts())

@@ -291,7 +291,8 @@ fn write_latency(f: &mut fmt::Formatter<'_>, latency: &Latency) -> fmt::Result {
         f.write_str("with its count")?;
     } else {
         write_time(f, *output_delay)?;
-        f.write_str(" after its count")?;
+        let is_old = !encoder.age.is_zero();
+        f.write_str(if is_old { " after the position of its count" } else { " after its count" })?;
     }
     if latency.total_jitter() > 0.0 {
         let jitter = if *output_jitter > 0.0 { output_jitter } else { count_jitter };

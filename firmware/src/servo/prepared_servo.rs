@@ -7,6 +7,7 @@ use super::{Output, Servo};
 use crate::build_error::BuildError;
 use crate::certificate::{TimingChecked, timing_checked};
 use crate::encoder::RawCount;
+use crate::encoder_reading::EncoderReading;
 use crate::energy::{EnergyMonitor, Injector, NoAction};
 use crate::environment::{EnvironmentModel, SupportsTiming};
 use crate::host::BesideServo;
@@ -116,7 +117,10 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> PreparedServo<E, N, M> {
         timed: &TimingChecked<Scene<E>, M>,
         transducers: &Transducers,
         options: &RenderingOptions,
-    ) -> Result<Self, BuildError> {
+    ) -> Result<Self, BuildError>
+    where
+        E: EnvironmentModel,
+    {
         let scene = timed.scene();
         let period = scene.timing.period;
         let bound = scene.torque_limit.unwrap_or(transducers.full_scale_torque);
@@ -231,14 +235,18 @@ impl TimingLimits {
         step.cast_unsigned().wrapping_add(self.largest_step) > self.span
     }
 
-    fn new<E>(scene: &Scene<E>, transducers: &Transducers) -> Result<Self, BuildError> {
+    fn new<E: EnvironmentModel>(
+        scene: &Scene<E>,
+        transducers: &Transducers,
+    ) -> Result<Self, BuildError> {
         let timing = scene.timing;
         let worst = timing.worst_period.unwrap_or(timing.period);
         // A worst period of two periods, within the precision of its digits, is two.
         let periods = worst / timing.period + 1e-9;
         let tolerated = (periods as u32).saturating_sub(1);
         // The counter must not wrap undetected before the missed ticks become a fault.
-        let reading = scene.latency.encoder;
+        let ideal = EncoderReading::ideal();
+        let reading = if E::MAY_MISREAD { scene.latency.encoder } else { ideal };
         transducers.largest_step(worst, reading)?;
         let largest_step = transducers.largest_step(timing.period, reading)?;
         // Below half the counter's range, so that twice the value fits.

@@ -12,6 +12,7 @@ use super::key;
 use super::section::Section;
 use super::transducers::counts_per_turn_of;
 use crate::chip_on_board::ChipOnBoard;
+use crate::quantity::rounded;
 
 /// The contents of `[encoder]`.
 pub struct EncoderTable {
@@ -143,6 +144,17 @@ impl EncoderTable {
         let beside = |key: &key::Key, other: &key::Key| {
             Err(top.conflict(key, format!("stands beside `{}`", other.path)))
         };
+        // By the mean value theorem.
+        let averages = |other: &key::Key| {
+            let (age, TimeRange { least, most }) = (key::AGE.path, self.reading.age);
+            let reason = format!(
+                "stands beside `{}`: leave it out, and state `{age} = [{least}, {}]`, as the mean is the position at \
+                 one instant of the window",
+                other.path,
+                rounded(most + window, 15)
+            );
+            Err(top.conflict(&key::WINDOW, reason))
+        };
         if !self.lag.is_zero() {
             if !latency.sensor_lag.is_zero() {
                 return beside(&key::READING_LAG, &key::SENSOR_LAG);
@@ -157,7 +169,7 @@ impl EncoderTable {
         if let Some((other, _)) = in_the_way.iter().find(|(_, time)| !time.is_zero())
             && window > 0.0
         {
-            return beside(&key::WINDOW, other);
+            return averages(other);
         }
         if !self.lag.is_zero() && !latency.actuator_response.is_zero() {
             return beside(&key::READING_LAG, &key::ACTUATOR_RESPONSE);
@@ -167,7 +179,7 @@ impl EncoderTable {
             return Err(top.conflict(&key::WINDOW, reason));
         }
         if window > 0.0 && latency.actuator_updates > 0 {
-            return beside(&key::WINDOW, &key::ACTUATOR_UPDATES);
+            return averages(&key::ACTUATOR_UPDATES);
         }
         Ok(latency)
     }
