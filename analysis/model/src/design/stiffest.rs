@@ -123,11 +123,11 @@ const LEVERS: [Lever; 9] = [
         let steps = Resolution { friction: Some(friction?), ..search.steps };
         Some(Search { steps, ..search.clone() })
     }),
-    ("an encoder with four times the counts and the same noise", |search| {
+    ("an encoder with four times the counts", |search| {
         let encoder = search.steps.encoder.filter(|_| search.rests).map(|step| 0.25 * step)?;
         let steps = Resolution { encoder: Some(encoder), ..search.steps };
         let finer = Search { steps, ..search.clone() };
-        // Noise and hysteresis are in counts.
+        // The same noise and hysteresis are four times as many counts.
         Some(finer.with_encoder(quadruple).unwrap_or(finer))
     }),
     ("no missed updates", |search| {
