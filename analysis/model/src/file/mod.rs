@@ -49,7 +49,7 @@ use std::path::Path;
 
 pub use device::Purpose;
 pub use device_file::DeviceFile;
-pub use named_device::naming;
+pub use named_device::{device_file_of, naming};
 pub use plausible::warnings;
 pub use problem::{FileError, Problem, excerpt};
 pub use scene::SceneFile;

@@ -16,10 +16,12 @@ use haptic_servo::current::TorqueSource;
 use haptic_servo::servo::Transducers;
 use serde::Serialize;
 
+use super::output_file::{FileArgument, check_writable, refuse_overwriting};
 use super::shared_arguments::{JsonOption, write};
 use super::status::{CommandError, CommandStatus};
 use super::value_parsers::{bounded, not_negative, positive};
 use crate::file::{self, StatedTransducers};
+use crate::identify::record::Recorder;
 use crate::identify::{
     self, Correction, Disk, Estimate, Identification, Latency, Record, torque_source,
 };
@@ -192,6 +194,7 @@ struct Report<'a> {
 /// Prints the device; the status is negative if it has no passivity for a certificate, or if a code of the
 /// emulated board differs from this machine's.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
+    check_files(arguments)?;
     if let Some(reference) = arguments.reference_per_rev {
         let (file, counts) = recorded(arguments)?;
         return linearity::run(arguments, file, counts, reference);
@@ -200,7 +203,9 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     if let Some(path) = arguments.output.as_deref().filter(|_| arguments.turns) {
         file::load_device(&path.to_string_lossy())?;
     }
-    let measured = measured(arguments)?;
+    let mut recorder = Recorder::new(arguments.record.as_deref());
+    let measured = measured(arguments, &mut recorder)?;
+    recorder.end().map_err(identify::IdentifyError::from)?;
     if arguments.turns {
         return turns::run(arguments, &measured);
     }
@@ -237,6 +242,18 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     Ok(CommandStatus::of(found.passivity().is_some() && differs.is_none()))
 }
 
+/// Refuses outputs that would overwrite a file or cannot be written, before a motor moves for minutes. The simulated
+/// device is an input: a measurement that writes half of its friction into it would find half of that the next time.
+fn check_files(arguments: &Arguments) -> Result<(), CommandError> {
+    let Arguments { file, record, output, .. } = arguments;
+    let outputs = [
+        FileArgument::of("--record", record.as_deref()),
+        FileArgument::of("-o", output.as_deref()),
+    ];
+    refuse_overwriting(&[FileArgument::of("FILE", file.as_deref())], &outputs)?;
+    outputs.into_iter().flatten().try_for_each(|output| check_writable(output.path))
+}
+
 /// The largest nonlinearity of the encoder in the files that say something of it: a simulated device's, and that of
 /// which numbers are replaced.
 fn stated_linearity(arguments: &Arguments) -> f64 {
@@ -260,11 +277,10 @@ struct Measured {
 }
 
 /// The record of a file, or a new record.
-fn measured(arguments: &Arguments) -> Result<Measured, CommandError> {
+fn measured(arguments: &Arguments, recorder: &mut Recorder<'_>) -> Result<Measured, CommandError> {
     let (file, stated) = (arguments.file.as_deref(), arguments.counts_per_rev);
-    let keep = arguments.record.as_deref();
     if let Some(address) = &arguments.port {
-        let (record, board) = port::measure(address, keep, arguments.turns)?;
+        let (record, board) = port::measure(address, recorder, arguments.turns)?;
         let is_paddle =
             board.counts_per_turn == TRANSDUCERS.counts_per_turn && board.source.is_none();
         return Ok(Measured {
@@ -289,11 +305,11 @@ fn measured(arguments: &Arguments) -> Result<Measured, CommandError> {
         let (measured, origin) = match arguments.turns {
             true => {
                 let sweep = program::turns::sweep(&transducers);
-                target::measure(simulated, ("turns", &sweep), device, keep, &transducers)?
+                target::measure(simulated, ("turns", &sweep), device, recorder, &transducers)?
             }
             false => {
                 let sweep = program::identify::sweep(&transducers);
-                target::measure(simulated, ("identify", &sweep), device, keep, &transducers)?
+                target::measure(simulated, ("identify", &sweep), device, recorder, &transducers)?
             }
         };
         return Ok(Measured {
