@@ -223,7 +223,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         Some(path) => device_file::replaced(path, &table, counts_per_turn)?,
         None => device_file(&table, counts_per_turn, full_scale),
     };
-    if let Some(age) = age.filter(|_| age::is_free(arguments.output.as_deref())) {
+    if let Some(age) = age.filter(|_| delays.is_age_free()) {
         let path = arguments.output.as_deref().unwrap_or(Path::new("the device"));
         table = device_file::edited(path, &table, &[age::number(&age)])?;
     }
