@@ -242,6 +242,14 @@ fn rows_that_are_missing_are_counted_together() {
     assert!(said.contains("(4 rows in 2 gaps in the file)"), "{said}");
 }
 
+#[test]
+fn a_header_within_a_record_is_named() {
+    let rows: String = (0..20).map(|k| format!("{},0.5,{k}\n", 1e-3 * f64::from(k))).collect();
+    let text = format!("time,torque,counts\n{rows}time, torque,counts\n{rows}");
+    let said = parse("x.csv", text.as_bytes(), 1e-3).unwrap_err().to_string();
+    assert!(said.starts_with("x.csv:22: the header of line 1 is repeated here"), "{said}");
+}
+
 /// A paddle's counts under a torque, both over time at 1 kHz.
 fn moved(torque: impl Fn(f64) -> f64, seconds: f64) -> Record {
     let torque: Vec<f64> =
