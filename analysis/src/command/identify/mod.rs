@@ -213,8 +213,8 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let settle = if origin.is_some() { 0.0 } else { SETTLE };
     let stated = arguments.reading.correction(counts_per_turn, settle);
     let correction = Correction { source: stated.source.or(torque_source), ..stated };
-    let linearity = stated_linearity(arguments);
-    let found = Identification { linearity, ..identify::identify(&record, &correction)? };
+    let found =
+        identify::identify(&record, &correction)?.with_linearity(stated_linearity(arguments));
     let notes = notes(&found);
     let delays = KnownDelays::of(arguments)?;
     let age = found.latency.ok().and_then(|latency| delays.age(&latency));
