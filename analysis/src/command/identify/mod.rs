@@ -445,7 +445,7 @@ fn notes(found: &Identification) -> Vec<String> {
              friction is told from damping",
             significant(found.damping.lo, 3),
         ));
-    } else if found.disk.delta <= 0.0 || found.is_rigid() && found.passivity().is_none() {
+    } else if let Some(negative) = negative_damping(found) {
         notes.push(format!(
             "the device has no passivity: Re(1/J) is {} N m s/rad at {} Hz. Check the sign of \
              torque and counts, the declared delays, and that motor and encoder are on the same \
@@ -454,6 +454,18 @@ fn notes(found: &Identification) -> Vec<String> {
             significant(found.disk.omega / std::f64::consts::TAU, 3),
         ));
     }
+/// The text on a damping that is not positive: as corrected for lag and delay, where the device is rigid.
+fn negative_damping(found: &Identification) -> Option<String> {
+    let Disk { delta, omega, .. } = found.disk;
+    let hertz = significant(omega / std::f64::consts::TAU, 3);
+    let damping = significant(found.damping.value, 3);
+    match found.is_rigid() {
+        true => found.passivity().is_none().then(|| format!("its damping is {damping} N m s/rad")),
+        false => (delta <= 0.0)
+            .then(|| format!("Re(1/J) is {} N m s/rad at {hertz} Hz", significant(delta, 3))),
+    }
+}
+
     notes
 }
 
