@@ -19,7 +19,7 @@ use serde::Serialize;
 use super::output_file::{FileArgument, check_writable, refuse_overwriting};
 use super::shared_arguments::{JsonOption, write};
 use super::status::{CommandError, CommandStatus};
-use super::value_parsers::{bounded, not_negative, positive};
+use super::value_parsers::{bounded, positive};
 use crate::file::{self, StatedTransducers};
 use crate::identify::record::Recorder;
 use crate::identify::{
@@ -76,12 +76,12 @@ pub struct Arguments {
 /// The corrections for reading a record.
 #[derive(Debug, Args)]
 pub struct Reading {
-    /// Time from the time stamp of a row until its torque is applied, in s
-    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = not_negative,
+    /// Time from the time stamp of a row until its torque is applied, in s, at most 0.1
+    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = delay,
           allow_negative_numbers = true)]
     pub torque_delay: f64,
-    /// Age of the counts of a row at its time stamp, in s
-    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = not_negative,
+    /// Age of the counts of a row at its time stamp, in s, at most 0.1
+    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = delay,
           allow_negative_numbers = true)]
     pub count_delay: f64,
     /// Fraction of each sine to skip while the device settles, 0 to 0.9; default: 0.25, with
@@ -447,13 +447,13 @@ fn notes(found: &Identification) -> Vec<String> {
         ));
     } else if let Some(negative) = negative_damping(found) {
         notes.push(format!(
-            "the device has no passivity: Re(1/J) is {} N m s/rad at {} Hz. Check the sign of \
-             torque and counts, the declared delays, and that motor and encoder are on the same \
-             mass",
-            significant(found.disk.delta, 3),
-            significant(found.disk.omega / std::f64::consts::TAU, 3),
+            "the device has no passivity: {negative}. Check the sign of torque and counts, the declared delays, and \
+             that motor and encoder are on the same mass"
         ));
     }
+    notes
+}
+
 /// The text on a damping that is not positive: as corrected for lag and delay, where the device is rigid.
 fn negative_damping(found: &Identification) -> Option<String> {
     let Disk { delta, omega, .. } = found.disk;
@@ -464,9 +464,6 @@ fn negative_damping(found: &Identification) -> Option<String> {
         false => (delta <= 0.0)
             .then(|| format!("Re(1/J) is {} N m s/rad at {hertz} Hz", significant(delta, 3))),
     }
-}
-
-    notes
 }
 
 /// The text on lag and delay separately.
@@ -649,6 +646,13 @@ fn current_loop(text: &str) -> Result<TorqueSource, String> {
     torque_source::parse(text).ok_or_else(|| {
         format!("expected the eight numbers of a current loop, above 0 and with commas between, got `{text}`")
     })
+}
+
+/// A delay of a torque or of counts. One that is longer than those of slow amplifiers and encoders is in another
+/// unit: it would turn the phase of each sine by many periods.
+fn delay(text: &str) -> Result<f64, String> {
+    let bound = "a number of seconds from 0 to 0.1; 80 us are 80e-6";
+    bounded(text, bound, |value| (0.0..=0.1).contains(&value))
 }
 
 fn part(text: &str) -> Result<f64, String> {
