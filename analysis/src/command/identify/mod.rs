@@ -648,8 +648,8 @@ fn current_loop(text: &str) -> Result<TorqueSource, String> {
     })
 }
 
-/// A delay of a torque or of counts. One that is longer than those of slow amplifiers and encoders is in another
-/// unit: it would turn the phase of each sine by many periods.
+/// A delay of a torque or of counts. No amplifier and no encoder has a longer one: such a number is in another
+/// unit, and would turn the phase of each sine by many periods.
 fn delay(text: &str) -> Result<f64, String> {
     let bound = "a number of seconds from 0 to 0.1; 80 us are 80e-6";
     bounded(text, bound, |value| (0.0..=0.1).contains(&value))
