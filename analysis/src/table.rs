@@ -222,6 +222,11 @@ impl<R: Read> Table<R> {
             Ok(true) => {
                 self.rows += 1;
                 let line = self.record.position().map_or(line, Position::line);
+                if self.record == self.header {
+                    let message =
+                        "the header of line 1 is repeated here: keep one record in a file";
+                    return Err(TableError::in_line(&self.file, line, message));
+                }
                 let (file, fields, decimal) = (&self.file, &self.record, &self.decimal);
                 Ok(Some(Row { file, line, fields, decimal }))
             }

@@ -1,12 +1,13 @@
 //! `haptic explore`: a scene in a browser, to change, watch, hold and send.
 
 use std::io::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use clap::Args;
 
 use super::building::{building, set_up};
+use super::output_file::{FileArgument, check_writable, refuse_overwriting};
 use super::shared_arguments::{warned, write};
 use super::status::{CommandError, CommandStatus};
 use crate::explore;
@@ -35,6 +36,10 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     if !matches!(extension.as_deref(), Some("html" | "htm")) {
         return Err(CommandError::NoPage { path: arguments.output.clone() });
     }
+    let scene = FileArgument::of("FILE", arguments.scene.as_deref().map(Path::new));
+    refuse_overwriting(&[scene], &[FileArgument::of("-o", Some(&arguments.output))])?;
+    // Before minutes of building.
+    check_writable(&arguments.output)?;
     let page = page(arguments.scene.as_deref())?;
     write(&arguments.output, &page)?;
     let kilobytes = page.len().div_ceil(1000);

@@ -18,6 +18,7 @@ mod flash;
 mod identify;
 mod new;
 mod outcome;
+mod output_file;
 mod rebuild_with_scene;
 mod run;
 mod schema;

@@ -104,6 +104,11 @@ pub enum CommandError {
     NoPage { path: PathBuf },
     #[error("the page is written, but no browser could be opened: {why}")]
     NoBrowser { why: String },
+    /// Two arguments, by their names.
+    #[error(
+        "{output} would overwrite {other}: both are {path}; name another file, for example a copy"
+    )]
+    Overwrites { output: &'static str, other: &'static str, path: PathBuf },
     /// A file or folder, mostly one to write.
     #[error("{path}: {source}")]
     Unwritable { path: PathBuf, source: io::Error },

@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use super::estimate::Estimate;
 use super::left_out::{LEAST_PERIODS, LeftOut, grouped};
 use super::turns::TurnsError;
 use crate::quantity::significant;
@@ -45,6 +46,14 @@ pub enum IdentifyError {
         100.0 * .part
     )]
     Clipped { frequency: f64, amplitude: f64, part: f64 },
+    #[error(
+        "the sines give an inertia of {} kg m^2, from {} to {}, which is below 0: they are too slow to show it, or \
+         this is no record of sines. A record of slow whole turns is read with --turns",
+        significant(.0.value, 3),
+        significant(.0.lo, 3),
+        significant(.0.hi, 3)
+    )]
+    Inertia(Estimate),
     #[error(
         "{usable} of {found} sines can be used; a fit of inertia, damping, lag and delay needs at \
          least 3 at different frequencies{}", reasons(.left_out)

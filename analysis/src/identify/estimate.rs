@@ -15,6 +15,12 @@ pub struct Estimate {
 }
 
 impl Estimate {
+    /// The same of a number that may be larger or smaller by this part of it.
+    pub fn within_part(self, part: f64) -> Self {
+        let Self { lo, hi, .. } = self;
+        Self { lo: lo - part * lo.abs(), hi: hi + part * hi.abs(), ..self }
+    }
+
     /// Whether the interval leaves out 0.
     pub fn is_significant(&self) -> bool {
         self.lo > 0.0 || self.hi < 0.0

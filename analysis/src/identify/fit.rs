@@ -55,6 +55,8 @@ pub struct Identification {
     pub inertia: Estimate,
     /// Damping in N m s/rad.
     pub damping: Estimate,
+    /// The damping less twice its uncertainty, in N m s/rad, as the encoder shows it.
+    pub least_damping: f64,
     /// Coulomb friction in N m. Where it cannot be told from damping, its upper end is that of a device without
     /// damping.
     pub friction: Estimate,
@@ -80,12 +82,18 @@ pub struct Identification {
     pub responses: Vec<FrequencyPoint>,
     /// Tones of the record that were not used, and why.
     pub left_out: Vec<LeftOut>,
-    /// The largest slope of the encoder's error over the angle, where it is known: the encoder shows a velocity
-    /// that is larger or smaller by as much, and a damping that is smaller or larger.
+    /// The largest slope of the encoder's error over the angle, where it is [known](Self::with_linearity).
     pub linearity: f64,
 }
 
 impl Identification {
+    /// The same for an encoder with this largest slope of its error over the angle: it shows a velocity that is
+    /// larger or smaller by as much, and an inertia and a damping that are smaller or larger.
+    pub fn with_linearity(self, linearity: f64) -> Self {
+        let [inertia, damping] = [self.inertia, self.damping].map(|it| it.within_part(linearity));
+        Self { inertia, damping, linearity, ..self }
+    }
+
     /// Whether inertia, damping, lag and delay explain the responses.
     pub fn is_rigid(&self) -> bool {
         self.misfit <= RIGID
@@ -102,9 +110,7 @@ impl Identification {
     /// for a device that is not rigid: no hand held it, and its damping in a hand cannot be measured from the
     /// motor alone (theory, section 3.2), and where friction may be part of what looks like damping.
     pub fn passivity(&self) -> Option<f64> {
-        let Estimate { value, lo, .. } = self.damping;
-        let damping = (value - BOUND * (value - lo)) * (1.0 - self.linearity);
-        let passivity = damping - self.motion_loss();
+        let passivity = self.least_damping * (1.0 - self.linearity) - self.motion_loss();
         (self.is_rigid() && self.tells_friction && passivity > 0.0).then_some(passivity)
     }
 }
@@ -161,9 +167,11 @@ pub fn identify(
     let plain = if is_rigid { None } else { measured.fit(0.0, Delay::Fixed(0.0)) };
     let responses = without_images(&measured, &plain.map_or(model, |fit| fit.model));
     let disk = disk(&responses);
+    let damping = profile.damping();
     Ok(Identification {
         inertia: profile.inertia(),
-        damping: profile.damping(),
+        damping,
+        least_damping: damping.value - BOUND * (damping.value - damping.lo),
         friction: friction(&profile, tells_friction, speeds[1]),
         tells_friction,
         speeds,

@@ -1,11 +1,10 @@
 //! A sweep played to a simulated device, by this process or by the emulated board, and recorded.
 
-use std::io;
 use std::path::Path;
 
 use haptic_servo::excitation::{Exciter, Sweep};
 
-use super::record::Record;
+use super::record::{Record, Recorder};
 use super::rig::{MeasuredDevice, torque_of};
 use crate::compare_run::RunError;
 use crate::emulator::Emulator;
@@ -24,17 +23,20 @@ pub struct Measurement {
 }
 
 /// Plays a sweep to a device at rest and records it. With a program `elf` the emulated board's codes drive
-/// the device, and each is compared. Calls `progress` on each tick.
+/// the device, and each is compared. The recorder gets a CSV file that can be [read](super::record::load) again.
+/// Calls `progress` on each tick.
 pub fn measure<const N: usize>(
     sweep: &Sweep<N>,
     device: &mut MeasuredDevice,
     elf: Option<&Path>,
+    recorder: &mut Recorder<'_>,
     mut progress: impl FnMut(),
 ) -> Result<Measurement, RunError> {
     let mut board = elf.map(Emulator::boot).transpose()?;
     let mut exciter = Exciter::new(sweep);
     let (mut torque, mut counts, mut frequency) = (vec![], vec![], vec![]);
     let (mut equal, mut difference) = (0, None);
+    recorder.begin("time,torque,counts,frequency");
     for tick in 0..sweep.ticks() as usize {
         let (count, excitation) = (device.count(), exciter.next());
         let host = excitation.code.get();
@@ -51,9 +53,13 @@ pub fn measure<const N: usize>(
         }
         let command = torque_of(code, sweep.full_scale_torque());
         device.hold(command);
+        let hertz = excitation.measured.map_or(0.0, |tone| sweep.tones()[tone].frequency);
+        // Without the last digits, which are the product's rounding.
+        let time = significant(tick as f64 * sweep.period(), 15);
+        recorder.row(&format!("{time},{command},{count},{hertz}"));
         torque.push(command);
         counts.push(f64::from(count));
-        frequency.push(excitation.measured.map_or(0.0, |tone| sweep.tones()[tone].frequency));
+        frequency.push(hertz);
         progress();
     }
     let equal = board.is_some().then_some(equal);
@@ -62,18 +68,4 @@ pub fn measure<const N: usize>(
     }
     let record = Record { period: sweep.period(), torque, counts, frequency: Some(frequency) };
     Ok(Measurement { record, equal, difference })
-}
-
-/// Writes a record as a CSV file that can be [read](super::record::load) again.
-pub fn write(record: &Record, mut out: impl io::Write) -> io::Result<()> {
-    let label = if record.frequency.is_some() { ",frequency" } else { "" };
-    writeln!(out, "time,torque,counts{label}")?;
-    for (row, (torque, counts)) in record.torque.iter().zip(&record.counts).enumerate() {
-        // Without the last digits, which are the product's rounding.
-        let time = significant(row as f64 * record.period, 15);
-        let frequency =
-            record.frequency.as_ref().map_or(String::new(), |all| format!(",{}", all[row]));
-        writeln!(out, "{time},{torque},{counts}{frequency}")?;
-    }
-    out.flush()
 }

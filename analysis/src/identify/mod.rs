@@ -61,7 +61,10 @@ pub fn identify(record: &Record, correction: &Correction) -> Result<Identificati
     input_check::polarity(&responses)?;
     let found = fit::identify(record.period, correction, steps.len(), responses, left_out)?;
     clipping::check(record, &steps, correction, &found)?;
-    Ok(found)
+    match found.inertia.value < 0.0 {
+        true => Err(IdentifyError::Inertia(found.inertia)),
+        false => Ok(found),
+    }
 }
 
 /// Friction, damping and cogging of a device, from a record of slow whole turns in both directions.

@@ -8,6 +8,7 @@ use haptic_servo::excitation::{SILENCE, SWEEP_PROTOCOL, SweepEnd};
 use haptic_servo::wire::sweep::SweepRequest;
 use thiserror::Error;
 
+use super::record::Recorder;
 use super::torque_source;
 use crate::link::{Address, LinkError, Transport, open, read_within};
 
@@ -203,10 +204,14 @@ impl SweepPort {
         Err(PortError::Silent { address: self.address.clone() })
     }
 
-    /// Begins the sweep and takes its record. Calls `progress` on each row.
+    /// Begins the sweep and takes its record, each row at once into the recorder. Calls `progress` on each row.
     ///
     /// The board ends the sweep by itself once this process is gone.
-    pub fn record(mut self, mut progress: impl FnMut()) -> Result<Recording, PortError> {
+    pub fn record(
+        mut self,
+        recorder: &mut Recorder<'_>,
+        mut progress: impl FnMut(),
+    ) -> Result<Recording, PortError> {
         self.send(&SweepRequest::BEGIN)?;
         let (mut text, mut rows) = (String::new(), 0);
         let ticks = self.description.ticks;
@@ -225,6 +230,7 @@ impl SweepPort {
             // Lines before the heading were sent before the sweep began.
             if line == HEADING {
                 (text, rows) = (String::new(), 0);
+                recorder.begin(&line);
             } else if text.is_empty() {
                 continue;
             } else if rows == ticks {
@@ -232,6 +238,7 @@ impl SweepPort {
                 return Err(PortError::TooLong { address, ticks });
             } else {
                 rows += 1;
+                recorder.row(&line);
                 progress();
             }
             text.push_str(&line);

@@ -1,7 +1,8 @@
 //! A recorded measurement: time, commanded torque and counts, one row a tick.
 
 use std::f64::consts::TAU;
-use std::io::Read;
+use std::fs::File;
+use std::io::{self, Read, Write};
 use std::path::Path;
 
 use crate::quantity::significant;
@@ -80,6 +81,53 @@ pub fn load(path: &Path, count_angle: f64) -> Result<Record, TableError> {
 /// The same from anything that can be read; messages call it `file`.
 pub fn parse(file: &str, text: impl Read, count_angle: f64) -> Result<Record, TableError> {
     read(Table::new(file, text)?, count_angle)
+}
+
+/// Writes a record row by row, so that its file has the rows before an end that came too early.
+#[derive(Debug, Default)]
+pub struct Recorder<'a> {
+    path: Option<&'a Path>,
+    file: Option<File>,
+    failure: Option<TableError>,
+}
+
+impl<'a> Recorder<'a> {
+    /// One for this file, which stays as it is until the record begins; without a path for none.
+    pub fn new(path: Option<&'a Path>) -> Self {
+        Self { path, ..Self::default() }
+    }
+
+    /// Begins the record, once more if it had begun, with the names of its columns.
+    pub fn begin(&mut self, heading: &str) {
+        let Some(path) = self.path else { return };
+        match File::create(path) {
+            Ok(file) => self.file = Some(file),
+            Err(error) => self.failure = Some(unwritable(path, &error)),
+        }
+        self.row(heading);
+    }
+
+    /// Adds a row.
+    pub fn row(&mut self, row: &str) {
+        let (Some(path), Some(file), None) = (self.path, &mut self.file, &self.failure) else {
+            return;
+        };
+        // A whole row at once, without a buffer that Ctrl-C would lose.
+        let written = file.write_all(format!("{row}\n").as_bytes());
+        self.failure = written.err().map(|error| unwritable(path, &error));
+    }
+
+    /// Ends the record.
+    ///
+    /// # Errors
+    /// Where a row could not be written.
+    pub fn end(self) -> Result<(), TableError> {
+        self.failure.map_or(Ok(()), Err)
+    }
+}
+
+fn unwritable(path: &Path, error: &io::Error) -> TableError {
+    TableError::of_file(&path.display().to_string(), format!("cannot be written: {error}"))
 }
 
 /// The column of the motion, in counts or as an angle.

@@ -242,6 +242,34 @@ fn rows_that_are_missing_are_counted_together() {
     assert!(said.contains("(4 rows in 2 gaps in the file)"), "{said}");
 }
 
+#[test]
+fn a_header_within_a_record_is_named() {
+    let rows: String = (0..20).map(|k| format!("{},0.5,{k}\n", 1e-3 * f64::from(k))).collect();
+    let text = format!("time,torque,counts\n{rows}time, torque,counts\n{rows}");
+    let said = parse("x.csv", text.as_bytes(), 1e-3).unwrap_err().to_string();
+    assert!(said.starts_with("x.csv:22: the header of line 1 is repeated here"), "{said}");
+}
+
+/// An encoder whose error has a slope shows another damping over the small angle of a sine.
+#[test]
+fn the_intervals_hold_the_truth_behind_an_encoder_with_a_slope() {
+    for slope in [-0.03, 0.03] {
+        let device = Device {
+            inertia: KNOB.inertia / (1.0 + slope),
+            damping: KNOB.damping / (1.0 + slope),
+            ..KNOB
+        };
+        let record = rig(device, SENSING).measure(&sines(device, LOW_TO_HIGH, 0.02));
+        let found = identify(&record, &Correction::of_encoder(61_440.0)).unwrap();
+        let holds = |it: &Identification| {
+            let is_in = |e: &Estimate, truth: f64| e.lo <= truth && truth <= e.hi;
+            [is_in(&it.damping, KNOB.damping), is_in(&it.inertia, KNOB.inertia)]
+        };
+        assert_eq!(holds(&found), [false; 2], "{found:?}");
+        assert_eq!(holds(&found.with_linearity(0.03)), [true; 2], "{slope}");
+    }
+}
+
 /// A paddle's counts under a torque, both over time at 1 kHz.
 fn moved(torque: impl Fn(f64) -> f64, seconds: f64) -> Record {
     let torque: Vec<f64> =

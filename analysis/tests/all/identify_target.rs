@@ -77,8 +77,11 @@ fn a_turned_motor_s_cogging_is_opposed_on_a_board() {
                 cogging = { torque = 0.005, count = 84 }\nactuator_lag = 8e-5\n\
                 [encoder]\ncounts_per_turn = 16384.0\nage = [0.0, 1e-5]\nnoise = 2.0\n\
                 [limits]\ntorque = 0.15\nfull_scale = 0.2\n";
-    std::fs::write(&device, text).unwrap();
-    let found = answer(&["identify", &device, "--target", "host", "--turns", "-o", &device]);
+    let truth = path("truth.toml");
+    for file in [&device, &truth] {
+        std::fs::write(file, text).unwrap();
+    }
+    let found = answer(&["identify", &truth, "--target", "host", "--turns", "-o", &device]);
     for (quantity, truth) in [
         ("/friction", 0.003),
         ("/damping", 0.001),

@@ -50,7 +50,7 @@ use std::path::Path;
 pub use device::Purpose;
 pub use device_file::DeviceFile;
 pub use encoder::is_beyond_longest;
-pub use named_device::naming;
+pub use named_device::{device_file_of, naming};
 pub use plausible::warnings;
 pub use problem::{FileError, Problem, excerpt};
 pub use scene::SceneFile;

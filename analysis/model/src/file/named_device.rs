@@ -1,6 +1,6 @@
 //! The device of a scene in a file of its own: `device = "knob.toml"` in place of the table.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::faults::{Faults, Read, Reported};
 use super::key::{self, Key, OF_DEVICE_FILE};
@@ -60,13 +60,18 @@ fn read(
     }
 }
 
+/// The device file that a scene file names, if it names one.
+pub fn device_file_of(scene: &str) -> Option<PathBuf> {
+    let scene = Path::new(scene);
+    let bytes = source::bytes(scene).ok()?;
+    let own = super::unmerged(scene, &bytes)?;
+    Some(scene.parent()?.join(own.get(key::DEVICE.name())?.as_str()?))
+}
+
 /// The text of a scene file for the path `to` that names the device file of the scene file `from` in place of its
 /// keys; none if that names no file, or if the device or its limits were changed.
 pub fn naming(text: &str, from: &str, to: &Path) -> Option<String> {
-    let from = Path::new(from);
-    let bytes = source::bytes(from).ok()?;
-    let own = super::unmerged(from, &bytes)?;
-    let device = from.parent()?.join(own.get(key::DEVICE.name())?.as_str()?);
+    let device = device_file_of(from)?;
     let keys = super::canonical(super::load_json(device.to_str()?).ok()?);
     let folder = std::path::absolute(to).ok()?.parent()?.canonicalize().ok()?;
     let device = device.canonicalize().ok()?;

@@ -6,10 +6,11 @@ mod motor;
 mod stiffest;
 
 use std::io::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 
+use super::output_file::{FileArgument, refuse_overwriting};
 use super::shared_arguments::{JsonOption, folder, json, warned};
 use super::status::{CommandError, CommandStatus};
 use crate::design::{self, Choice, DesignLimit, Judge, Quantity, Terms, board_refusal};
@@ -97,6 +98,21 @@ pub enum DesignGoal {
     },
 }
 
+impl DesignGoal {
+    /// The scene files that it reads.
+    fn files(&self) -> Vec<&str> {
+        match self {
+            Self::Motor(_) => vec![],
+            Self::Stiffest(stiffest::Arguments { file, .. })
+            | Self::Largest { file, .. }
+            | Self::Border { file, .. } => vec![file],
+            Self::Lowest { files, .. } | Self::Device { files } | Self::Period { files } => {
+                files.iter().map(String::as_str).collect()
+            }
+        }
+    }
+}
+
 /// A quantity to minimise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Lowest {
@@ -113,6 +129,7 @@ fn part(text: &str) -> Result<f64, String> {
 
 /// Runs the command; the status is negative if no value passes.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
+    arguments.check_output()?;
     let terms = arguments.terms();
     match &arguments.question {
         DesignGoal::Stiffest(stiffest) => stiffest::run(arguments, stiffest),
@@ -208,6 +225,19 @@ impl Arguments {
         let coupling = if self.keep_coupling { Choice::Kept } else { Choice::Standard };
         let Self { safety, exact, .. } = *self;
         Terms { safety, coupling, judge: Judge::BOARD, exact, full_scale: None }
+    }
+
+    /// Refuses to overwrite a scene or the device file that it names.
+    fn check_output(&self) -> Result<(), CommandError> {
+        let scenes: Vec<_> =
+            self.question.files().into_iter().filter(|file| *file != "-").collect();
+        let devices: Vec<_> =
+            scenes.iter().filter_map(|scene| file::device_file_of(scene)).collect();
+        let scenes = scenes.iter().map(|scene| FileArgument::of("FILE", Some(Path::new(*scene))));
+        let devices =
+            devices.iter().map(|device| FileArgument::of("the `device` of FILE", Some(device)));
+        let inputs: Vec<_> = scenes.chain(devices).collect();
+        refuse_overwriting(&inputs, &[FileArgument::of("-o", self.output.as_deref())])
     }
 
     fn load_all(&self, files: &[String]) -> Result<Vec<SceneFile>, CommandError> {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use haptic_servo::magnetic::Transfers;
+use haptic_servo::magnetic::{Chip, Transfers};
 use haptic_servo::scene::TimeRange;
 
 use super::device_file::Number;
@@ -21,6 +21,8 @@ pub struct KnownDelays {
     torque_delay: Option<f64>,
     /// Whether the age is declared, so that the output's delay is what remains.
     is_age_known: bool,
+    /// Whether the file that is written has a chip, whose age is that of all of its kind.
+    has_chip: bool,
 }
 
 impl KnownDelays {
@@ -30,12 +32,19 @@ impl KnownDelays {
         let simulated = arguments.file.as_deref().filter(|_| arguments.target.target.is_some());
         let path = written.or(simulated);
         let declared = arguments.reading.torque_delay;
-        let stated = path.map(|path| stated(&path.to_string_lossy())).transpose()?.flatten();
+        let (chip, stated) = path.map(chip_and_age).transpose()?.unwrap_or_default();
         Ok(Self {
             stated,
+            has_chip: written.and(chip).is_some(),
             torque_delay: stated.and((declared > 0.0).then_some(declared)),
             is_age_known: arguments.reading.count_delay > 0.0,
         })
+    }
+
+    /// Whether an age may be written: one within the range of a chip is refused, as another chip of its kind may have
+    /// any.
+    pub fn is_age_free(&self) -> bool {
+        !self.has_chip
     }
 
     /// The part of a delay that is the output's, as a range in s: what was declared, or without the stated age.
@@ -85,18 +94,14 @@ impl KnownDelays {
     }
 }
 
-/// The age that a file states of its encoder, if it states one: in the table, or by its chip.
-pub fn stated(file: &str) -> Result<Option<TimeRange>, CommandError> {
-    let device = file::load_device(file)?;
+/// The chip of a file's encoder, and the age that the file states of it: in the table, or by the chip.
+pub fn chip_and_age(
+    path: &Path,
+) -> Result<(Option<&'static Chip>, Option<TimeRange>), CommandError> {
+    let device = file::load_device(&path.to_string_lossy())?;
     let age = device.reading.age;
     let of_chip = device.chip.map(|chip| chip.age_in(&Transfers::at_count(chip, PERIOD)));
-    Ok(if age.is_zero() { of_chip } else { Some(age) })
-}
-
-/// Whether a file has no chip that states an age: one within that is refused, as another chip of its kind may have any.
-pub fn is_free(path: Option<&Path>) -> bool {
-    let chip = |path: &Path| file::load_device(&path.to_string_lossy()).ok()?.chip;
-    path.and_then(chip).is_none()
+    Ok((device.chip, if age.is_zero() { of_chip } else { Some(age) }))
 }
 
 /// An age for a file, rounded outwards: no reading is younger than its time.

@@ -50,9 +50,9 @@ pub fn run(
     };
     let pair = pair.map_err(IdentifyError::from)?;
     let found = identify::linearity(&pair, [counts_per_turn, reference])?;
-    let written = arguments.output.as_deref().map(Path::to_string_lossy);
-    let stated = written.map(|file| age::stated(&file)).transpose()?.flatten();
-    let numbers = numbers(&found, age::is_free(arguments.output.as_deref()));
+    let written = arguments.output.as_deref().map(age::chip_and_age);
+    let (chip, stated) = written.transpose()?.unwrap_or_default();
+    let numbers = numbers(&found, chip.is_none());
     if let Some(path) = &arguments.output {
         write(path, &with_numbers(path, &numbers, counts_per_turn)?)?;
     }

@@ -16,10 +16,12 @@ use haptic_servo::current::TorqueSource;
 use haptic_servo::servo::Transducers;
 use serde::Serialize;
 
+use super::output_file::{FileArgument, check_writable, refuse_overwriting};
 use super::shared_arguments::{JsonOption, write};
 use super::status::{CommandError, CommandStatus};
-use super::value_parsers::{bounded, not_negative, positive};
+use super::value_parsers::{bounded, positive};
 use crate::file::{self, StatedTransducers};
+use crate::identify::record::Recorder;
 use crate::identify::{
     self, Correction, Disk, Estimate, Identification, Latency, Record, torque_source,
 };
@@ -74,12 +76,12 @@ pub struct Arguments {
 /// The corrections for reading a record.
 #[derive(Debug, Args)]
 pub struct Reading {
-    /// Time from the time stamp of a row until its torque is applied, in s
-    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = not_negative,
+    /// Time from the time stamp of a row until its torque is applied, in s, at most 0.1
+    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = delay,
           allow_negative_numbers = true)]
     pub torque_delay: f64,
-    /// Age of the counts of a row at its time stamp, in s
-    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = not_negative,
+    /// Age of the counts of a row at its time stamp, in s, at most 0.1
+    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = delay,
           allow_negative_numbers = true)]
     pub count_delay: f64,
     /// Fraction of each sine to skip while the device settles, 0 to 0.9; default: 0.25, with
@@ -192,6 +194,7 @@ struct Report<'a> {
 /// Prints the device; the status is negative if it has no passivity for a certificate, or if a code of the
 /// emulated board differs from this machine's.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
+    check_files(arguments)?;
     if let Some(reference) = arguments.reference_per_rev {
         let (file, counts) = recorded(arguments)?;
         return linearity::run(arguments, file, counts, reference);
@@ -200,7 +203,9 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     if let Some(path) = arguments.output.as_deref().filter(|_| arguments.turns) {
         file::load_device(&path.to_string_lossy())?;
     }
-    let measured = measured(arguments)?;
+    let mut recorder = Recorder::new(arguments.record.as_deref());
+    let measured = measured(arguments, &mut recorder)?;
+    recorder.end().map_err(identify::IdentifyError::from)?;
     if arguments.turns {
         return turns::run(arguments, &measured);
     }
@@ -208,8 +213,8 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let settle = if origin.is_some() { 0.0 } else { SETTLE };
     let stated = arguments.reading.correction(counts_per_turn, settle);
     let correction = Correction { source: stated.source.or(torque_source), ..stated };
-    let linearity = stated_linearity(arguments);
-    let found = Identification { linearity, ..identify::identify(&record, &correction)? };
+    let found =
+        identify::identify(&record, &correction)?.with_linearity(stated_linearity(arguments));
     let notes = notes(&found);
     let delays = KnownDelays::of(arguments)?;
     let age = found.latency.ok().and_then(|latency| delays.age(&latency));
@@ -218,7 +223,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         Some(path) => device_file::replaced(path, &table, counts_per_turn)?,
         None => device_file(&table, counts_per_turn, full_scale),
     };
-    if let Some(age) = age.filter(|_| age::is_free(arguments.output.as_deref())) {
+    if let Some(age) = age.filter(|_| delays.is_age_free()) {
         let path = arguments.output.as_deref().unwrap_or(Path::new("the device"));
         table = device_file::edited(path, &table, &[age::number(&age)])?;
     }
@@ -235,6 +240,18 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         eprintln!("{difference}");
     }
     Ok(CommandStatus::of(found.passivity().is_some() && differs.is_none()))
+}
+
+/// Refuses outputs that would overwrite a file or cannot be written, before a motor moves for minutes. The simulated
+/// device is an input: a measurement that writes half of its friction into it would find half of that the next time.
+fn check_files(arguments: &Arguments) -> Result<(), CommandError> {
+    let Arguments { file, record, output, .. } = arguments;
+    let outputs = [
+        FileArgument::of("--record", record.as_deref()),
+        FileArgument::of("-o", output.as_deref()),
+    ];
+    refuse_overwriting(&[FileArgument::of("FILE", file.as_deref())], &outputs)?;
+    outputs.into_iter().flatten().try_for_each(|output| check_writable(output.path))
 }
 
 /// The largest nonlinearity of the encoder in the files that say something of it: a simulated device's, and that of
@@ -260,11 +277,10 @@ struct Measured {
 }
 
 /// The record of a file, or a new record.
-fn measured(arguments: &Arguments) -> Result<Measured, CommandError> {
+fn measured(arguments: &Arguments, recorder: &mut Recorder<'_>) -> Result<Measured, CommandError> {
     let (file, stated) = (arguments.file.as_deref(), arguments.counts_per_rev);
-    let keep = arguments.record.as_deref();
     if let Some(address) = &arguments.port {
-        let (record, board) = port::measure(address, keep, arguments.turns)?;
+        let (record, board) = port::measure(address, recorder, arguments.turns)?;
         let is_paddle =
             board.counts_per_turn == TRANSDUCERS.counts_per_turn && board.source.is_none();
         return Ok(Measured {
@@ -289,11 +305,11 @@ fn measured(arguments: &Arguments) -> Result<Measured, CommandError> {
         let (measured, origin) = match arguments.turns {
             true => {
                 let sweep = program::turns::sweep(&transducers);
-                target::measure(simulated, ("turns", &sweep), device, keep, &transducers)?
+                target::measure(simulated, ("turns", &sweep), device, recorder, &transducers)?
             }
             false => {
                 let sweep = program::identify::sweep(&transducers);
-                target::measure(simulated, ("identify", &sweep), device, keep, &transducers)?
+                target::measure(simulated, ("identify", &sweep), device, recorder, &transducers)?
             }
         };
         return Ok(Measured {
@@ -429,16 +445,25 @@ fn notes(found: &Identification) -> Vec<String> {
              friction is told from damping",
             significant(found.damping.lo, 3),
         ));
-    } else if found.disk.delta <= 0.0 || found.is_rigid() && found.passivity().is_none() {
+    } else if let Some(negative) = negative_damping(found) {
         notes.push(format!(
-            "the device has no passivity: Re(1/J) is {} N m s/rad at {} Hz. Check the sign of \
-             torque and counts, the declared delays, and that motor and encoder are on the same \
-             mass",
-            significant(found.disk.delta, 3),
-            significant(found.disk.omega / std::f64::consts::TAU, 3),
+            "the device has no passivity: {negative}. Check the sign of torque and counts, the declared delays, and \
+             that motor and encoder are on the same mass"
         ));
     }
     notes
+}
+
+/// The text on a damping that is not positive: as corrected for lag and delay, where the device is rigid.
+fn negative_damping(found: &Identification) -> Option<String> {
+    let Disk { delta, omega, .. } = found.disk;
+    let hertz = significant(omega / std::f64::consts::TAU, 3);
+    let damping = significant(found.damping.value, 3);
+    match found.is_rigid() {
+        true => found.passivity().is_none().then(|| format!("its damping is {damping} N m s/rad")),
+        false => (delta <= 0.0)
+            .then(|| format!("Re(1/J) is {} N m s/rad at {hertz} Hz", significant(delta, 3))),
+    }
 }
 
 /// The text on lag and delay separately.
@@ -621,6 +646,13 @@ fn current_loop(text: &str) -> Result<TorqueSource, String> {
     torque_source::parse(text).ok_or_else(|| {
         format!("expected the eight numbers of a current loop, above 0 and with commas between, got `{text}`")
     })
+}
+
+/// A delay of a torque or of counts. No amplifier and no encoder has a longer one: such a number is in another
+/// unit, and would turn the phase of each sine by many periods.
+fn delay(text: &str) -> Result<f64, String> {
+    let bound = "a number of seconds from 0 to 0.1; 80 us are 80e-6";
+    bounded(text, bound, |value| (0.0..=0.1).contains(&value))
 }
 
 fn part(text: &str) -> Result<f64, String> {

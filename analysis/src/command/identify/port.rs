@@ -1,11 +1,9 @@
 //! A record measured by a board: `haptic identify --port`.
 
-use std::path::Path;
-
-use crate::command::shared_arguments::write;
 use crate::command::status::CommandError;
 use crate::identify::port::{Description, SweepPort};
-use crate::identify::{IdentifyError, Record, record};
+use crate::identify::record::{self, Recorder};
+use crate::identify::{IdentifyError, Record};
 use crate::link::Address;
 use crate::progress;
 
@@ -13,17 +11,14 @@ use crate::progress;
 /// also kept, for inspection.
 pub fn measure(
     address: &Address,
-    keep: Option<&Path>,
+    recorder: &mut Recorder<'_>,
     turns: bool,
 ) -> Result<(Record, Description), CommandError> {
     let port = SweepPort::open(address)?;
     port.check_program(turns)?;
     let bar = progress::bar(port.description().ticks, "identify");
-    let recording = port.record(progress::stepper(&bar))?;
+    let recording = port.record(recorder, progress::stepper(&bar))?;
     bar.finish_and_clear();
-    if let Some(path) = keep {
-        write(path, &recording.text)?;
-    }
     recording.check_complete()?;
     let count_angle = std::f64::consts::TAU / recording.description.counts_per_turn;
     let read = record::parse(&address.to_string(), recording.text.as_bytes(), count_angle);

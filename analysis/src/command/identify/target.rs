@@ -1,9 +1,5 @@
 //! The target of a measurement that `haptic identify` simulates: a device, driven by the program `identify`.
 
-use std::fs::File;
-use std::io::BufWriter;
-use std::path::Path;
-
 use clap::{Args, ValueEnum};
 use haptic_servo::excitation::Sweep;
 use haptic_servo::servo::Transducers;
@@ -14,6 +10,7 @@ use crate::command::status::CommandError;
 use crate::command::value_parsers::not_negative;
 use crate::file::DeviceFile;
 use crate::identify::measurement::{self, Measurement};
+use crate::identify::record::Recorder;
 use crate::identify::rig::{MeasuredDevice, Sensing};
 use crate::lockstep::Difference;
 use crate::program::damper_wall;
@@ -89,7 +86,7 @@ pub fn measure<const N: usize>(
     arguments: &Simulated,
     (program, sweep): (&str, &Sweep<N>),
     file: Option<&DeviceFile>,
-    keep: Option<&Path>,
+    recorder: &mut Recorder<'_>,
     transducers: &Transducers,
 ) -> Result<(Measurement, Origin), CommandError> {
     let target = arguments.target.unwrap_or(Target::Host);
@@ -106,13 +103,8 @@ pub fn measure<const N: usize>(
     let mut device = device(file, &sensing)?;
     let bar = progress::bar(sweep.ticks(), "identify");
     let stepper = progress::stepper(&bar);
-    let measured = measurement::measure(sweep, &mut device, elf.as_deref(), stepper)?;
+    let measured = measurement::measure(sweep, &mut device, elf.as_deref(), recorder, stepper)?;
     bar.finish_and_clear();
-    if let Some(path) = keep {
-        let unwritable = |source| CommandError::Unwritable { path: path.to_owned(), source };
-        let out = File::create(path).map_err(unwritable)?;
-        measurement::write(&measured.record, BufWriter::new(out)).map_err(unwritable)?;
-    }
     let origin = Origin {
         target,
         ticks: measured.record.torque.len(),

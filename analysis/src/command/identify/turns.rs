@@ -38,11 +38,30 @@ struct Report<'a> {
 struct Cogging<'a> {
     /// Torque in N m at equally spaced angles of a turn, from 0 on, the mean included.
     torque: &'a [f64],
-    /// Half of the interval of these torques in N m, as a root mean square.
+    /// Half of the interval of each of these torques in N m, with all harmonics up to `highest`: what remains
+    /// where the map opposes the cogging.
     uncertainty: f64,
+    highest: u32,
+    /// Whether the map is told from noise; otherwise no file gets it.
+    told: bool,
     harmonics: &'a [Harmonic],
     /// Amplitudes in N m that would not have been found.
     not_resolved: &'a [Floor],
+}
+
+/// What the file of which numbers are replaced states.
+#[derive(Default)]
+struct Stated {
+    linearity: f64,
+    /// In N m.
+    friction: f64,
+}
+
+impl Stated {
+    /// Whether its friction is more than the measured one.
+    fn has_more_friction(&self, found: &SlowTurns) -> bool {
+        self.friction > found.least_friction.hi
+    }
 }
 
 /// Prints what the turns of a record show, and writes it to a file of the device.
@@ -52,13 +71,17 @@ pub fn run(arguments: &Arguments, measured: &Measured) -> Result<CommandStatus, 
     let found = identify::slow_turns(record, &correction)?;
     let written =
         arguments.output.as_deref().map(|path| file::load_device(&path.to_string_lossy()));
-    let linearity = written.transpose()?.map_or(0.0, |file| file.reading.linearity);
-    let numbers = numbers(&found, linearity);
+    let stated = written.transpose()?.map(|file| Stated {
+        linearity: file.reading.linearity,
+        friction: file.disturbance.friction,
+    });
+    let stated = stated.unwrap_or_default();
+    let numbers = numbers(&found, &stated);
     if let Some(path) = &arguments.output {
         write(path, &with_numbers(path, &numbers, *counts_per_turn)?)?;
     }
     let report = report(&found, origin.as_ref());
-    arguments.answer.print(&report, |_| text(&found, origin.as_ref(), &numbers))?;
+    arguments.answer.print(&report, |_| text(&found, &stated, origin.as_ref(), &numbers))?;
     Ok(CommandStatus::Success)
 }
 
@@ -73,6 +96,8 @@ fn report<'a>(found: &'a SlowTurns, measured: Option<&'a Origin>) -> Report<'a> 
         cogging: Cogging {
             torque: &found.map,
             uncertainty: found.uncertainty,
+            highest: found.highest,
+            told: found.tells_cogging(),
             harmonics: &found.harmonics,
             not_resolved: &found.floors,
         },
@@ -83,38 +108,47 @@ fn report<'a>(found: &'a SlowTurns, measured: Option<&'a Origin>) -> Report<'a> 
     }
 }
 
-/// The numbers of the device's file, whose encoder has this linearity.
-fn numbers(found: &SlowTurns, linearity: f64) -> Vec<Number> {
+/// The numbers of the device's file.
+fn numbers(found: &SlowTurns, stated: &Stated) -> Vec<Number> {
+    let friction = friction(found, stated);
+    if !found.tells_cogging() {
+        return friction.into_iter().collect();
+    }
+    let torques: Vec<String> = found.map.iter().map(|torque| significant(*torque, 4)).collect();
+    let map = Number {
+        table: "anticogging",
+        key: "torque",
+        value: format!("[{}]", torques.join(", ")),
+        comment: format!(
+            "N m, each +- {} N m at 95 % with the harmonics up to {} a turn",
+            significant(found.uncertainty, 2),
+            found.highest
+        ),
+    };
+    let comment = String::new();
+    let share = Number { table: "anticogging", key: "share", value: "1.0".into(), comment };
+    let harmonics: Vec<String> = found.cogging(stated.linearity).iter().map(harmonic).collect();
+    let cogging = Number {
+        table: "device",
+        key: "cogging",
+        value: format!("[{}]", harmonics.join(", ")),
+        comment: "of the map below, for simulation".into(),
+    };
+    friction.into_iter().chain([cogging, map, share]).collect()
+}
+
+/// The friction for the file. Where nothing shows that there is some, a file keeps its own, if it is not more than
+/// the measured one.
+fn friction(found: &SlowTurns, stated: &Stated) -> Option<Number> {
     let Estimate { lo, hi, .. } = found.least_friction;
     let [lo_text, hi_text] = [lo, hi].map(|torque| significant(torque, 3));
-    let friction = (lo > 0.0).then(|| Number {
+    (lo > 0.0 || stated.has_more_friction(found)).then(|| Number {
         table: "device",
         key: "friction",
         // Rounded down.
         value: significant(0.5 * lo * (1.0 - 5e-3), 3),
         comment: format!("N m, half of the least of {lo_text} to {hi_text} N m at 95 %"),
-    });
-    let has_map = !found.harmonics.is_empty();
-    let torques: Vec<String> = found.map.iter().map(|torque| significant(*torque, 4)).collect();
-    let map = has_map.then(|| {
-        let comment = format!("N m, each +- {} N m at 95 %", significant(found.uncertainty, 2));
-        let value = format!("[{}]", torques.join(", "));
-        Number { table: "anticogging", key: "torque", value, comment }
-    });
-    let share = has_map.then(|| Number {
-        table: "anticogging",
-        key: "share",
-        value: "1.0".into(),
-        comment: String::new(),
-    });
-    let harmonics: Vec<String> = found.cogging(linearity).iter().map(harmonic).collect();
-    let cogging = has_map.then(|| Number {
-        table: "device",
-        key: "cogging",
-        value: format!("[{}]", harmonics.join(", ")),
-        comment: "of the map below, for simulation".into(),
-    });
-    [friction, cogging, map, share].into_iter().flatten().collect()
+    })
 }
 
 /// A harmonic as `device.cogging` has it.
@@ -129,7 +163,7 @@ fn harmonic(Sine { torque, count, phase }: &Sine) -> String {
 /// Largest number of harmonics that the text names.
 const NAMED: usize = 3;
 
-fn text(found: &SlowTurns, origin: Option<&Origin>, numbers: &[Number]) -> String {
+fn text(found: &SlowTurns, stated: &Stated, origin: Option<&Origin>, numbers: &[Number]) -> String {
     let of = |e: &Estimate, unit: &str| {
         let reach = significant((e.value - e.lo).max(e.hi - e.value), 2);
         format!("{} +- {reach} {unit}", significant(e.value, 4))
@@ -145,6 +179,12 @@ fn text(found: &SlowTurns, origin: Option<&Origin>, numbers: &[Number]) -> Strin
             range(&found.friction)
         ),
     };
+    let friction = match stated.has_more_friction(found) {
+        true => {
+            format!("{friction}: less than the {} N m of the file", significant(stated.friction, 3))
+        }
+        false => friction,
+    };
     let mut rows = vec![
         ("turns", format!("{forward} forward, {back} back, at {least} to {most} rad/s")),
         ("friction", friction),
@@ -153,8 +193,9 @@ fn text(found: &SlowTurns, origin: Option<&Origin>, numbers: &[Number]) -> Strin
         ("mean", of(&found.mean, "N m, of a load or the amplifier's offset")),
         ("cogging", cogging(found)),
         ("map", map(found)),
-        ("not resolved", not_resolved(&found.floors, "N m")),
     ];
+    rows.extend(remains(found));
+    rows.push(("not resolved", not_resolved(&found.floors, "N m")));
     rows.extend(origin.map(Origin::row));
     let rows: String = rows.iter().map(|(label, value)| format!("{label:<12} {value}\n")).collect();
     let in_file = numbers.iter().map(|Number { table, key, value, comment }| {
@@ -183,13 +224,24 @@ fn cogging(found: &SlowTurns) -> String {
 }
 
 fn map(found: &SlowTurns) -> String {
-    let most = found.map.iter().fold(0.0, |most: f64, torque| most.max(torque.abs()));
-    format!(
-        "{} samples a turn, up to {} N m, each +- {} N m",
-        found.map.len(),
-        significant(most, 3),
-        significant(found.uncertainty, 2)
-    )
+    let [most, each] = [found.largest(), found.uncertainty].map(|torque| significant(torque, 2));
+    let highest = found.highest;
+    let size =
+        format!("up to {most} N m, each +- {each} N m with the harmonics up to {highest} a turn");
+    match found.tells_cogging() {
+        true => format!("{} samples a turn, {size}", found.map.len()),
+        false if found.harmonics.is_empty() => format!(
+            "none: cogging of {each} N m, of harmonics up to {highest} a turn, may be hidden by the noise"
+        ),
+        false => format!("none: not told from noise, {size}"),
+    }
+}
+
+/// The cogging that remains where the map opposes it.
+fn remains(found: &SlowTurns) -> Option<(&'static str, String)> {
+    let [most, each] = [found.largest(), found.uncertainty].map(|torque| significant(torque, 2));
+    let text = format!("up to {each} N m of {most} N m, where the whole map opposes the cogging");
+    found.tells_cogging().then_some(("remains", text))
 }
 
 /// The amplitudes of harmonics that a record does not show: in the lowest and in the highest range.

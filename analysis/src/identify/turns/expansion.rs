@@ -87,6 +87,9 @@ pub struct Expansion {
     fast: Vec<u32>,
     /// Ranges of harmonics, by their highest.
     pub floors: Vec<Floor>,
+    /// Largest root mean square of all harmonics of the even part together that were not found, up to
+    /// [`Self::top`], at the confidence of the intervals; 0 where nobody has [looked](Self::refined).
+    pub left_out: f64,
     values: DVector<f64>,
     /// What the values become without each of the turns, less the values.
     without: Vec<DVector<f64>>,
@@ -144,6 +147,8 @@ struct Peak {
     amplitude: f64,
     /// Amplitude above which it stands out of the noise.
     threshold: f64,
+    /// Mean square of the amplitude that noise alone has.
+    noise: f64,
 }
 
 impl Expansion {
@@ -159,6 +164,7 @@ impl Expansion {
             odd: vec![],
             fast: sought.fast.to_vec(),
             floors: vec![],
+            left_out: 0.0,
             values: DVector::zeros(0),
             without: vec![],
             quantile: 0.0,
@@ -166,7 +172,7 @@ impl Expansion {
         let rows = rows_for(highest);
         let turns = rows.iter().map(|row| row.turn + 1).max()?;
         let begin = nothing.fitted(&rows, None, &vec![1.0; turns])?;
-        let (mut found, _) = begin.with_more(&rows, 1, highest, 0)?;
+        let (mut found, _) = begin.with_more(&rows, 1..=highest, 0)?;
         let tops = (FIRST.ilog2()..).map(|power| (1 << power).min(highest));
         let mut floors: Vec<Floor> = Vec::new();
         for top in tops {
@@ -174,41 +180,58 @@ impl Expansion {
             if lowest > top {
                 break;
             }
-            let (more, amplitude) =
-                found.with_more(&rows_for(top), lowest, top, sought.highest_odd)?;
+            let (more, spectrum) =
+                found.with_more(&rows_for(top), lowest..=top, sought.highest_odd)?;
             found = more;
-            floors.push(Floor { highest: top, amplitude });
+            floors.push(Floor { highest: top, amplitude: spectrum.floor() });
         }
         found.floors = floors;
         Some(found)
     }
 
-    /// The same with harmonics between the lowest and the highest that stand out of these rows, and the largest
-    /// amplitude that would not have.
+    /// The same with harmonics of a range that stand out of these rows, and the spectrum of the others.
     fn with_more(
         self,
         rows: &[Row],
-        lowest: u32,
-        highest: u32,
+        range: RangeInclusive<u32>,
         highest_odd: u32,
-    ) -> Option<(Self, f64)> {
+    ) -> Option<(Self, Spectrum)> {
         let mut found = self.again(rows)?;
-        let mut floor = 0.0;
-        for _ in 0..ROUNDS {
+        let mut rounds = 0;
+        loop {
             let residuals: Vec<f64> = rows.iter().map(|row| row.value - found.at(row)).collect();
             let shares = shares_of(rows, &residuals, found.without.len());
-            let spectrum = Spectrum::of(rows, &residuals, &shares, lowest..=highest);
-            floor = spectrum.floor();
+            let spectrum = Spectrum::of(rows, &residuals, &shares, range.clone());
             let (more_even, more_odd) = spectrum.besides(&found, highest_odd);
             let (mut even, mut odd) = (found.even.clone(), found.odd.clone());
             even.extend(&more_even);
             odd.extend(&more_odd);
-            if more_even.is_empty() && more_odd.is_empty() || even.len() + odd.len() > MOST {
-                break;
+            let has_more = even.len() + odd.len() > found.even.len() + found.odd.len();
+            if !has_more || even.len() + odd.len() > MOST || rounds == ROUNDS {
+                return Some((found, spectrum));
             }
             found = Self { even, odd, ..found }.fitted(rows, None, &shares)?;
+            rounds += 1;
         }
-        Some((found, floor))
+    }
+
+    /// The same in other rows of the same turns, with further harmonics up to [`Self::top`] that stand out there.
+    pub fn refined(self, rows: &[Row], highest_odd: u32) -> Option<Self> {
+        let range = 1..=self.top();
+        let (found, spectrum) = self.with_more(rows, range, highest_odd)?;
+        Some(Self { left_out: spectrum.left_out(&found), ..found })
+    }
+
+    /// The end of the range of harmonics in which the highest is that was found.
+    pub fn top(&self) -> u32 {
+        let steepest = self.steepest();
+        let holds = |floor: &&Floor| floor.highest >= steepest;
+        self.floors.iter().find(holds).map_or(steepest, |floor| floor.highest)
+    }
+
+    /// The highest harmonic that was found, 1 without any.
+    pub fn steepest(&self) -> u32 {
+        self.even.iter().chain(&self.odd).max().map_or(1, |order| *order)
     }
 
     /// All harmonics.
@@ -429,7 +452,7 @@ impl Spectrum {
             // The amplitude of a real series is twice that of its complex part. The variance is that of both
             // components, the quantile for the mean of the two.
             let (amplitude, threshold) = (2.0 * mean.norm(), 2.0 * (variance * quantile).sqrt());
-            Peak { order, amplitude, threshold }
+            Peak { order, amplitude, threshold, noise: 4.0 * variance }
         };
         let peaks = |is_odd| range.clone().map(|order| peak(order, is_odd)).collect();
         Self { even: peaks(false), odd: peaks(true) }
@@ -446,6 +469,20 @@ impl Spectrum {
         let is_large = |peak: &&Peak| peak.amplitude >= LEAKS * most;
         let orders = |peak: &Peak| peak.order;
         (even.filter(is_large).map(orders).collect(), odd.filter(is_large).map(orders).collect())
+    }
+
+    /// Upper end of the interval of the root mean square of all harmonics together that were not found.
+    fn left_out(&self, found: &Expansion) -> f64 {
+        let left = self.even.iter().filter(|peak| !found.even.contains(&peak.order));
+        let (mut power, mut variance) = (0.0, 0.0);
+        for Peak { amplitude, noise, .. } in left {
+            let own = 0.5 * (amplitude * amplitude - noise);
+            power += own;
+            // Of the power of noise, and of noise beside a harmonic.
+            variance += 0.25 * noise * noise + noise * own;
+        }
+        // Many harmonics: their sum is nearly normal.
+        (power.max(0.0) + student(1e6) * variance.max(0.0).sqrt()).sqrt()
     }
 
     /// Largest amplitude that would not have stood out.

@@ -49,6 +49,10 @@ const PHASE: f64 = 0.5;
 const SAMPLES: u32 = 16;
 /// Fewest samples of a map.
 const LEAST_SAMPLES: u32 = 32;
+/// Ratio of the torque that harmonics are below at an angle, with the confidence of 95 %, to their root mean square.
+/// Of any number of sines whose phases have nothing to do with each other it is at most `sqrt(2 ln(2/0.05))`: the
+/// exponential moment of a sine is at most that of a normal distribution with its variance (Hoeffding).
+const EACH: f64 = 2.717;
 /// Part of the largest torque above which an amplifier that clips would show.
 const IS_LOUD: f64 = 0.75;
 /// Part of an added torque that may be missing.
@@ -81,8 +85,11 @@ pub struct SlowTurns {
     /// Cogging and mean in N m at equally spaced angles of a turn, the first at zero: the torque on the device,
     /// positive in the direction of the angle.
     pub map: Vec<f64>,
-    /// Half of the interval of the map in N m, as a root mean square over the turn.
+    /// Half of the interval of each torque of the map in N m, with all harmonics up to `highest` in it, those that
+    /// were not found included: what remains of the cogging where the map opposes it.
     pub uncertainty: f64,
+    /// The highest harmonic that the uncertainty includes.
+    pub highest: u32,
     /// Harmonics of the cogging, the largest first.
     pub harmonics: Vec<Harmonic>,
     /// Harmonics of the friction over the angle.
@@ -125,10 +132,11 @@ pub fn slow_turns(record: &Record, correction: &Correction) -> Result<SlowTurns,
     if friction < 0.0 && found.number(DAMPING)[0] < 0.0 {
         return Err(TurnsError::Reversed { torque: friction });
     }
-    // With windows as long as the harmonics that are there allow, in which there is less noise.
-    let steepest = found.even.iter().chain(&found.odd).max().map_or(1, |order| *order);
+    // With windows as long as the harmonics that are there allow, in which there is less noise: weaker ones stand
+    // out, too.
+    let steepest = found.steepest();
     let mut rows = balance.rows(&turns, steepest);
-    let found = found.again(&rows).ok_or(too_few.clone())?;
+    let found = found.refined(&rows, HIGHEST_ODD).ok_or(too_few.clone())?;
     balance.check_clipping(&rows, &found)?;
     // The speed in a window is not steady, because of the cogging that is sought.
     let means = balance.means(&turns, steepest, &found);
@@ -146,7 +154,7 @@ pub fn slow_turns(record: &Record, correction: &Correction) -> Result<SlowTurns,
 
 impl SlowTurns {
     fn of(found: &Expansion, turns: [usize; 2], speeds: [f64; 2]) -> Self {
-        let (map, uncertainty) = map(found);
+        let (map, reach) = map(found);
         Self {
             inertia: estimate(found.number(INERTIA)),
             damping: estimate(found.number(DAMPING)),
@@ -154,13 +162,25 @@ impl SlowTurns {
             least_friction: least_friction(found, map.len()),
             mean: estimate(opposed(found.number(MEAN))),
             map,
-            uncertainty,
+            uncertainty: reach.hypot(EACH * found.left_out),
+            highest: found.top(),
             harmonics: harmonics(found),
             friction_harmonics: found.odd.clone(),
             floors: found.floors.clone(),
             turns,
             speeds,
         }
+    }
+
+    /// Largest torque in N m of the map besides its mean.
+    pub fn largest(&self) -> f64 {
+        let mean = self.map.iter().sum::<f64>() / self.map.len() as f64;
+        self.map.iter().fold(0.0, |most: f64, torque| most.max((torque - mean).abs()))
+    }
+
+    /// Whether the map is told from noise: where it opposes the cogging, less remains than without it.
+    pub fn tells_cogging(&self) -> bool {
+        !self.harmonics.is_empty() && self.uncertainty < self.largest()
     }
 
     /// The harmonics of the cogging over the angle of the device, where the encoder shows `x + linearity sin(x)` as
@@ -202,7 +222,7 @@ impl SlowTurns {
 
     /// The same with intervals that hold those of another fit of the same harmonics.
     fn covering(self, other: &Self) -> Self {
-        let apart = root_mean_square(self.map.iter().zip(&other.map).map(|(a, b)| a - b));
+        let apart = self.map.iter().zip(&other.map).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         let same = |count: u32| other.harmonics.iter().find(|harmonic| harmonic.count == count);
         let wider = |harmonic: &Harmonic| Harmonic {
             amplitude: same(harmonic.count)
@@ -372,12 +392,7 @@ impl Balance<'_> {
     }
 }
 
-fn root_mean_square(numbers: impl ExactSizeIterator<Item = f64>) -> f64 {
-    let count = numbers.len() as f64;
-    (numbers.map(|number| number * number).sum::<f64>() / count).sqrt()
-}
-
-/// The map of the mean and the cogging, and half of its interval, as a root mean square over the turn.
+/// The map of the mean and the cogging, and half of its widest interval.
 fn map(found: &Expansion) -> (Vec<f64>, f64) {
     let highest = found.even.iter().max().map_or(0, |order| *order);
     let samples = (SAMPLES * highest).next_power_of_two().max(LEAST_SAMPLES);
@@ -388,7 +403,7 @@ fn map(found: &Expansion) -> (Vec<f64>, f64) {
         [-command, reach]
     };
     let all: Vec<[f64; 2]> = (0..samples).map(at).collect();
-    let reach = root_mean_square(all.iter().map(|[_, reach]| *reach));
+    let reach = all.iter().fold(0.0, |most: f64, [_, reach]| most.max(*reach));
     (all.iter().map(|[torque, _]| *torque).collect(), reach)
 }
 

@@ -88,38 +88,13 @@ fn holds(interval: &Estimate, truth: f64) -> bool {
     interval.lo <= truth && truth <= interval.hi
 }
 
-/// Whether a map is as near to the cogging as is said: its harmonics by its interval, the others by what would
-/// not have been found.
+/// Whether every sample of a map is as near to the cogging as is said.
 fn is_near(found: &SlowTurns, truth: &Truth) -> bool {
-    const ANGLES: u32 = 2048;
-    let angle = |sample: u32| TAU * f64::from(sample) / f64::from(ANGLES);
-    let off = |sample: u32| {
-        let of = |it: &Harmonic| {
-            it.amplitude.value * (f64::from(it.count) * angle(sample) + it.phase).sin()
-        };
-        // What opposes it has the opposite sign.
-        found.harmonics.iter().map(of).sum::<f64>() + truth.cogging_at(angle(sample))
+    let samples = found.map.len() as f64;
+    let off = |(sample, torque): (usize, &f64)| {
+        (torque - truth.cogging_at(TAU * sample as f64 / samples)).abs()
     };
-    let off: Vec<f64> = (0..ANGLES).map(off).collect();
-    let amplitude = |order: u32| {
-        let turned = |(sample, off): (u32, &f64)| {
-            Complex::from_polar(2.0 / f64::from(ANGLES) * off, f64::from(order) * angle(sample))
-        };
-        (0..).zip(&off).map(turned).sum::<Complex<f64>>().norm()
-    };
-    let mut squares = 0.0;
-    let mut are_small = true;
-    for order in 1..=128 {
-        let amplitude = amplitude(order);
-        if found.harmonics.iter().any(|harmonic| harmonic.count == order) {
-            squares += 0.5 * amplitude * amplitude;
-        } else {
-            let floor = found.floors.iter().find(|floor| order <= floor.highest);
-            // Found with an even chance at it.
-            are_small &= floor.is_none_or(|floor| amplitude < 2.0 * floor.amplitude);
-        }
-    }
-    squares.sqrt() < found.uncertainty && are_small
+    found.map.iter().enumerate().map(off).all(|off| off < found.uncertainty)
 }
 
 /// Over the angle of the device, what a nonlinear encoder spreads over harmonics is one again.
