@@ -4,12 +4,13 @@ use std::f64::consts::TAU;
 
 use haptic_servo::certificate::is_static_at_port;
 use haptic_servo::current::B_G431B_ESC1;
-use haptic_servo::latency::LONGEST_DELAY;
+use haptic_servo::latency::{LONGEST_DELAY, LONGEST_LAG};
 use haptic_servo::magnetic::{Chip, Transfers};
 use haptic_servo::scene::{EncoderReading, Latency, Scene, TimeRange};
 
 use super::faults::{Read, Reported};
 use super::key;
+use super::scene::check_time;
 use super::section::Section;
 use super::transducers::counts_per_turn_of;
 
@@ -144,6 +145,7 @@ impl EncoderTable {
             if !latency.sensor_lag.is_zero() {
                 return beside(&key::READING_LAG, &key::SENSOR_LAG);
             }
+            check_time(top, (&key::READING_LAG, self.lag), LONGEST_LAG, period)?;
             latency.sensor_lag = self.lag;
         }
         let in_the_way = [

@@ -124,7 +124,7 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
     let supply = supplied.and_then(|table| table.map(|it| supply(it, largest)).transpose());
     let host = host.and_then(|table| table.map(host::host).transpose());
     let driven = driven.and_then(|table| table.map(motor).transpose());
-    let (name, table, reading, learnt) = (name?, device?, reading?, learnt?);
+    let (name, table, reading, learnt, motor) = (name?, device?, reading?, learnt?, driven?);
     let [torque_limit, encoder_step, full_scale] = limits?;
     let (servo, coupling, environment) = (servo?, coupling?, environment?);
     let (environment, shapes) = match environment {
@@ -148,14 +148,14 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
     if let Some(reading) = reading {
         scene = reading.read(&top, scene, friction)?;
         encoder_step = reading.step(&top, encoder_step)?;
-        let has_motor = driven.as_ref().is_ok_and(Option::is_some);
-        reading.check_chip(&top, &scene, encoder_step, has_motor)?;
+        reading.check_chip(&top, &scene, encoder_step, motor.is_some())?;
         chip = reading.chip;
     }
+    motor.map_or(Ok(()), |motor| motor.check_phase(&top, encoder_step))?;
     if let Some(learnt) = learnt {
         scene = anticogging::beside(&top, scene, learnt, friction, full_scale)?;
     }
-    let (simulation, hand, host, supply, motor) = (simulation?, hand?, host?, supply?, driven?);
+    let (simulation, hand, host, supply) = (simulation?, hand?, host?, supply?);
     let taken = torque_limit.map(|limit| limit + scene.environment.parts().against_cogging());
     host::check(&top, host.as_ref(), [taken, full_scale], simulation.as_ref())?;
     Ok(SceneFile {
@@ -216,18 +216,26 @@ fn servo_of(mut section: Section<'_>) -> Read<Servo> {
     Ok(Servo { timing: Timing { period, worst_period }, latency })
 }
 
+/// Checks that the time of a key is at most `longest` periods of the servo.
+pub fn check_time(
+    top: &Section<'_>,
+    (key, time): (&Key, TimeRange),
+    longest: f64,
+    period: f64,
+) -> Read<()> {
+    if time.most <= longest * period {
+        return Ok(());
+    }
+    let name = key::PERIOD.path;
+    let times = if longest == 1.0 { String::new() } else { format!("{longest} times ") };
+    let reason = format!("is more than {times}`{name}` = {period} s, the most that it may be");
+    Err(top.conflict(key, reason))
+}
+
 /// Checks the times between count and torque, each with a bound that depends on other keys.
 fn check_latency(top: &Section<'_>, timing: &Timing, latency: &Latency, is_late: bool) -> Read<()> {
     let period = timing.period;
-    let within = |(key, time, longest): (&Key, TimeRange, f64)| {
-        if time.most <= longest * period {
-            return Ok(());
-        }
-        let name = key::PERIOD.path;
-        let times = if longest == 1.0 { String::new() } else { format!("{longest} times ") };
-        let reason = format!("is more than {times}`{name}` = {period} s, the most that it may be");
-        Err(top.conflict(key, reason))
-    };
+    let within = |(key, time, longest)| check_time(top, (key, time), longest, period);
     let output_delay = within((&key::OUTPUT_DELAY, latency.output_delay, LONGEST_DELAY));
     let others = [
         (&key::ACTUATOR_LAG, latency.actuator_lag, LONGEST_LAG),
