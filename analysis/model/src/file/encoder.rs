@@ -75,7 +75,8 @@ impl EncoderTable {
         Ok(of_limits.or(own.map(|counts| TAU / counts)))
     }
 
-    /// Checks that the scene covers the readings of its chip: at its counts, or at the updates of a board's own bridge.
+    /// Checks that the scene covers the readings of its chip: at its counts, or at the updates of a board's own bridge,
+    /// without which no board renders the scene.
     pub fn check_chip(
         &self,
         top: &Section<'_>,
@@ -86,7 +87,12 @@ impl EncoderTable {
         let (Some(chip), Some(step)) = (self.chip, step) else { return Ok(()) };
         let (counts, period) = (counts_per_turn_of(step), scene.timing.period);
         let transfers = match f64::from(scene.latency.actuator_updates) {
-            updates if has_motor && updates > 0.0 => {
+            0.0 if has_motor => {
+                let other = key::ACTUATOR_UPDATES.path;
+                let reason = format!("is read before each update of the bridge: state `{other}`");
+                return Err(top.conflict(&key::CHIP, reason));
+            }
+            updates if has_motor => {
                 Transfers::before_update(chip, period / updates, B_G431B_ESC1.clock)
             }
             _ => Transfers::at_count(period),
