@@ -101,10 +101,8 @@ impl Rejection {
             Self::UnstablePole { .. } => "unstable_pole",
             Self::RepeatedUnitPole { .. } => "repeated_unit_pole",
             Self::ResidueAngle { .. } | Self::HiddenMode { .. } => "residue_angle",
-            Self::NegativeResidue { .. }
-            | Self::Motor { .. }
-            | Self::MotorByInl { .. }
-            | Self::Uneven => "negative_residue",
+            Self::NegativeResidue { .. } => "negative_residue",
+            Self::Motor { .. } | Self::MotorByInl { .. } | Self::Uneven => "motor",
             Self::Coupling { .. } => "coupling",
             Self::Undecided { .. } | Self::Anticogging { needed: None, .. } => "undecided",
         }

@@ -156,7 +156,7 @@ fn an_endless_profile_needs_friction_beside_a_nonlinear_encoder() {
         let rejection = certify(&knob(friction, "linearity = 0.028").scene).unwrap_err();
         let Rejection::MotorByInl { mean, .. } = rejection else { panic!("{rejection}") };
         near(mean.hi(), needed);
-        assert_eq!(rejection.reason(), "negative_residue");
+        assert_eq!(rejection.reason(), "motor");
         assert!(rejection.to_string().contains("0.000576"), "{rejection}");
     }
     let holds = judge_file(&knob("friction = 0.00058", "linearity = 0.028"), Numbers::F64);
