@@ -168,17 +168,18 @@ impl EncoderTable {
             return beside(&key::READING_LAG, &key::ACTUATOR_RESPONSE);
         }
         if window > period {
-            let reason = format!("is more than `{}` = {period} s", key::PERIOD.path);
+            let reason = format!("is more than {} = {period} s", top.stated(&key::PERIOD));
             return Err(top.conflict(&key::WINDOW, reason));
         }
         if window > 0.0 && latency.actuator_updates > 0 {
             return beside(&key::WINDOW, &key::ACTUATOR_UPDATES);
         }
+        check_time(top, (&key::AGE, age), LONGEST_DELAY, period)?;
         if latency.output_delay.most + age.most > LONGEST_DELAY * period {
             let reason = format!(
-                "and `{}` are together more than {LONGEST_DELAY} times `{}` = {period} s",
+                "and `{}` are together more than {LONGEST_DELAY} times {} = {period} s",
                 key::OUTPUT_DELAY.path,
-                key::PERIOD.path
+                top.stated(&key::PERIOD)
             );
             return Err(top.conflict(&key::AGE, reason));
         }

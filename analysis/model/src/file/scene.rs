@@ -210,7 +210,7 @@ fn servo_of(mut section: Section<'_>) -> Read<Servo> {
         ..Latency::NONE
     };
     if worst_period.is_some_and(|worst| worst < period) {
-        let reason = format!("is shorter than `{}` = {period} s", key::PERIOD.path);
+        let reason = format!("is shorter than {} = {period} s", section.stated(&key::PERIOD));
         return Err(section.conflict(&key::WORST_PERIOD, reason));
     }
     Ok(Servo { timing: Timing { period, worst_period }, latency })
@@ -226,9 +226,9 @@ pub fn check_time(
     if time.most <= longest * period {
         return Ok(());
     }
-    let name = key::PERIOD.path;
+    let name = top.stated(&key::PERIOD);
     let times = if longest == 1.0 { String::new() } else { format!("{longest} times ") };
-    let reason = format!("is more than {times}`{name}` = {period} s, the most that it may be");
+    let reason = format!("is more than {times}{name} = {period} s, the most that it may be");
     Err(top.conflict(key, reason))
 }
 
@@ -249,7 +249,7 @@ fn check_latency(top: &Section<'_>, timing: &Timing, latency: &Latency, is_late:
         Err(_) => f64::INFINITY,
     };
     let jitter = (latency.output_jitter > largest).then(|| {
-        let reason = format!("is {}", more_than_time_to_torque(latency, largest));
+        let reason = format!("is {}", more_than_time_to_torque(top, latency, largest));
         top.conflict(&key::OUTPUT_JITTER, reason)
     });
     output_delay?;
@@ -259,9 +259,10 @@ fn check_latency(top: &Section<'_>, timing: &Timing, latency: &Latency, is_late:
     updates::check(top, latency, timing)
 }
 
-fn more_than_time_to_torque(latency: &Latency, largest: f64) -> String {
+fn more_than_time_to_torque(top: &Section<'_>, latency: &Latency, largest: f64) -> String {
     let least = latency.output_delay.least;
-    let late = if largest > least { format!(" and `{}`", key::PERIOD.path) } else { String::new() };
+    let period = top.stated(&key::PERIOD);
+    let late = if largest > least { format!(" and {period}") } else { String::new() };
     format!(
         "more than the least `{}` = {least} s{late}: no torque comes before its count",
         key::OUTPUT_DELAY.path
@@ -281,15 +282,17 @@ fn check_count_jitter(
         jitter => format!("and `{}` = {jitter} s are together", key::OUTPUT_JITTER.path),
     };
     let reason = match latency.bound_on_two_jitters(timing.period) {
-        _ if sum > largest => format!("{beside} {}", more_than_time_to_torque(latency, largest)),
+        _ if sum > largest => {
+            format!("{beside} {}", more_than_time_to_torque(top, latency, largest))
+        }
         _ if !latency.jitters_twice() => return Ok(()),
         None => format!(
             "stands beside `{}` and a lag of which only a range is known, for which there is no proof",
             key::OUTPUT_JITTER.path
         ),
         Some(bound) if sum >= bound => format!(
-            "{beside} not below {bound} s, half of what the ranges of delay and response leave of `{}`",
-            key::PERIOD.path
+            "{beside} not below {bound} s, half of what the ranges of delay and response leave of {}",
+            top.stated(&key::PERIOD)
         ),
         Some(_) => return Ok(()),
     };

@@ -170,6 +170,17 @@ impl<'t> Section<'t> {
         }
     }
 
+    /// The name of that key in a message; of a key whose number another states, of [`key::RECIPROCALS`], by that.
+    pub fn stated(&self, key: &Key) -> String {
+        let other = key::RECIPROCALS
+            .iter()
+            .find(|(other, of, _)| *of == key && self.place(other).is_some());
+        match other {
+            Some((other, _, product)) => format!("{product}/`{}`", other.path),
+            None => format!("`{}`", key.path),
+        }
+    }
+
     /// The number of that key. Where it is left out, it is the key's default, if that has one.
     pub fn number(&mut self, key: &Key) -> Read<f64> {
         let is_needed = self.needed.contains(&key);
