@@ -10,7 +10,6 @@ use haptic_servo::scene::{EncoderReading, Latency, Scene, TimeRange};
 
 use super::faults::{Read, Reported};
 use super::key;
-use super::scene::check_time;
 use super::section::Section;
 use super::transducers::counts_per_turn_of;
 
@@ -151,7 +150,7 @@ impl EncoderTable {
             if !latency.sensor_lag.is_zero() {
                 return beside(&key::READING_LAG, &key::SENSOR_LAG);
             }
-            check_time(top, (&key::READING_LAG, self.lag), LONGEST_LAG, period)?;
+            top.check_time(&key::READING_LAG, self.lag, LONGEST_LAG, period)?;
             latency.sensor_lag = self.lag;
         }
         let in_the_way = [
@@ -174,7 +173,7 @@ impl EncoderTable {
         if window > 0.0 && latency.actuator_updates > 0 {
             return beside(&key::WINDOW, &key::ACTUATOR_UPDATES);
         }
-        check_time(top, (&key::AGE, age), LONGEST_DELAY, period)?;
+        top.check_time(&key::AGE, age, LONGEST_DELAY, period)?;
         if latency.output_delay.most + age.most > LONGEST_DELAY * period {
             let reason = format!(
                 "and `{}` are together more than {LONGEST_DELAY} times {} = {period} s",

@@ -4,7 +4,7 @@ use haptic_servo::environment::{Coefficients, Environment, MAX_DEGREE, MAX_DELAY
 use haptic_servo::host::HostTorque;
 use haptic_servo::latency::{LONGEST_DELAY, LONGEST_LAG};
 use haptic_servo::magnetic::Chip;
-use haptic_servo::scene::{Coupling, Latency, Scene, TimeRange, Timing};
+use haptic_servo::scene::{Coupling, Latency, Scene, Timing};
 
 use super::anticogging;
 use super::device::{self, DeviceTable, Purpose};
@@ -216,26 +216,10 @@ fn servo_of(mut section: Section<'_>) -> Read<Servo> {
     Ok(Servo { timing: Timing { period, worst_period }, latency })
 }
 
-/// Checks that the time of a key is at most `longest` periods of the servo.
-pub fn check_time(
-    top: &Section<'_>,
-    (key, time): (&Key, TimeRange),
-    longest: f64,
-    period: f64,
-) -> Read<()> {
-    if time.most <= longest * period {
-        return Ok(());
-    }
-    let name = top.stated(&key::PERIOD);
-    let times = if longest == 1.0 { String::new() } else { format!("{longest} times ") };
-    let reason = format!("is more than {times}{name} = {period} s, the most that it may be");
-    Err(top.conflict(key, reason))
-}
-
 /// Checks the times between count and torque, each with a bound that depends on other keys.
 fn check_latency(top: &Section<'_>, timing: &Timing, latency: &Latency, is_late: bool) -> Read<()> {
     let period = timing.period;
-    let within = |(key, time, longest)| check_time(top, (key, time), longest, period);
+    let within = |(key, time, longest)| top.check_time(key, time, longest, period);
     let output_delay = within((&key::OUTPUT_DELAY, latency.output_delay, LONGEST_DELAY));
     let others = [
         (&key::ACTUATOR_LAG, latency.actuator_lag, LONGEST_LAG),

@@ -223,6 +223,17 @@ impl<'t> Section<'t> {
         Ok(time)
     }
 
+    /// Checks that the time of that key is at most `longest` periods of the servo.
+    pub fn check_time(&self, key: &Key, time: TimeRange, longest: f64, period: f64) -> Read<()> {
+        if time.most <= longest * period {
+            return Ok(());
+        }
+        let name = self.stated(&key::PERIOD);
+        let times = if longest == 1.0 { String::new() } else { format!("{longest} times ") };
+        let reason = format!("is more than {times}{name} = {period} s, the most that it may be");
+        Err(self.conflict(key, reason))
+    }
+
     /// The whole number of that key, as [`Section::number`].
     pub fn whole(&mut self, key: &Key) -> Read<usize> {
         Ok(self.number(key)? as usize)
