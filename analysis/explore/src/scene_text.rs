@@ -42,7 +42,12 @@ impl Wrong {
 /// The format of a text: JSON if it begins with a brace.
 fn format(text: &str) -> Result<Format, FileError> {
     if text.len() as u64 > file::MAX_BYTES {
-        return Err(FileError::whole(NAME, 1, 1, Problem::TooLong { bound: file::MAX_BYTES }));
+        return Err(FileError::whole(
+            NAME,
+            1,
+            1,
+            Problem::TooLong { part: "file", bound: file::MAX_BYTES },
+        ));
     }
     Ok(Format::of(NAME, text))
 }

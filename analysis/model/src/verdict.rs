@@ -9,8 +9,9 @@ use haptic_servo::certificate::{
 use haptic_servo::host::{HostError, HostTorque};
 use haptic_servo::number::Format;
 use haptic_servo::passivity::interval::Interval;
-use haptic_servo::scene::{Coupling, Scene};
+use haptic_servo::scene::{Coupling, EncoderReading, Latency, Scene};
 use haptic_servo::servo::OutputTiming;
+use haptic_servo::text::RoundUp3;
 use serde::{Serialize, Serializer};
 
 use crate::beside_host;
@@ -281,6 +282,10 @@ fn reported(
         }
         None => (None, Vec::new()),
     };
+    let friction = rejection.filter(|_| has_remedies).and_then(|rejection| match is_for_a_board {
+        true => enough_friction(scene, &rejection, passes),
+        false => enough_friction(scene, &rejection, |scene| certify_in(scene, format).is_ok()),
+    });
     let is_judged = match &rejection {
         Some(rejection) => is_shortage(rejection),
         None => is_for_a_board && refusal.as_ref().is_some_and(|it| it.is_rejection),
@@ -344,11 +349,27 @@ fn reported(
             .map(ToOwned::to_owned)
             .into_iter()
             .chain(changes.iter().map(ToString::to_string))
+            .chain(friction)
             .collect(),
         changes,
         matched,
         no_remedy,
     }
+}
+
+/// The friction that is enough against a mean torque, if the scene passes with it. It is a number of the device, and no
+/// parameter of a scene.
+fn enough_friction(
+    scene: &Scene,
+    rejection: &Rejection,
+    passes: impl Fn(&Scene) -> bool,
+) -> Option<String> {
+    let Rejection::MotorByInl { mean, .. } = rejection else { return None };
+    // A scene refers to it, as to the table of a torque profile.
+    let encoder = EncoderReading { friction: mean.hi(), ..*scene.latency.encoder };
+    let latency = Latency { encoder: Box::leak(Box::new(encoder)), ..scene.latency };
+    passes(&Scene { latency, ..*scene })
+        .then(|| format!("device friction >= {} N m", RoundUp3(mean.hi())))
 }
 
 /// Whether a rejection is of a number that is too large or too small.

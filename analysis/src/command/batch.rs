@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use serde_json::json;
 
 use super::status::CommandError;
-use crate::file::{self, FileError, Problem};
+use crate::file::{self, FileError, MAX_BYTES, Problem};
 use crate::number;
 use crate::verdict;
 
@@ -20,13 +20,10 @@ const CHUNK: usize = 1024;
 /// Bytes that are read ahead.
 const BUFFER: usize = 1 << 20;
 
-/// Longest line in bytes; a scene has a few hundred.
-const MAX_LINE: u64 = 1 << 16;
-
 enum Line {
     /// Its bytes, without the newline.
     Bytes(Vec<u8>),
-    /// It was longer than [`MAX_LINE`], and the rest of it was passed over.
+    /// It was longer than [`MAX_BYTES`], and the rest of it was passed over.
     TooLong,
 }
 
@@ -83,12 +80,12 @@ fn read_chunk(
 
 fn read_line(source: &mut impl BufRead) -> io::Result<Option<Line>> {
     let mut bytes = Vec::new();
-    if source.by_ref().take(MAX_LINE).read_until(b'\n', &mut bytes)? == 0 {
+    if source.by_ref().take(MAX_BYTES + 1).read_until(b'\n', &mut bytes)? == 0 {
         return Ok(None);
     }
     if bytes.last() == Some(&b'\n') {
         bytes.pop();
-    } else if bytes.len() as u64 == MAX_LINE {
+    } else if bytes.len() as u64 > MAX_BYTES {
         // The rest of the line is not kept.
         source.skip_until(b'\n')?;
         return Ok(Some(Line::TooLong));
@@ -101,7 +98,8 @@ fn answer(file: &str, format: Format, number: usize, line: &Line) -> Vec<u8> {
     let judged = match line {
         Line::Bytes(bytes) => judge(file, format, number, bytes),
         Line::TooLong => {
-            Err(FileError::whole(file, number, 1, Problem::TooLong { bound: MAX_LINE }).into())
+            let problem = Problem::TooLong { part: "line", bound: MAX_BYTES };
+            Err(FileError::whole(file, number, 1, problem).into())
         }
     };
     let text = match judged {

@@ -4,6 +4,7 @@ use std::io::{Read, Write};
 use std::process::{Output, Stdio};
 
 use crate::common::{haptic_reading as haptic, program};
+use analysis::file::MAX_BYTES;
 use serde_json::Value;
 
 const WALL: &str = r#"{"name": "wall", "device": {"inertia": 2.2e-5, "damping": 0.022}, "servo": {"period": 0.001}, "coupling": {"stiffness": 44}, "environment": {"type": "damper-wall", "stiffness": 22, "damping": 0.01, "delay": 1}}"#;
@@ -54,7 +55,9 @@ fn a_batch_answers_line_for_line_in_order() {
     input[7] = b"nonsense".to_vec();
     input[8] = b"".to_vec();
     input[9] = b"{\"name\": \"\xff\"}".to_vec();
-    input[10] = vec![b'x'; 200_000];
+    input[10] = vec![b'x'; MAX_BYTES as usize + 1];
+    // A profile or a map may make a scene long.
+    input[11].extend(vec![b' '; 200_000]);
     let output = haptic(&["certify", "--batch", "-"], &input.join(&b'\n'));
     assert_eq!(output.status.code(), Some(0));
     let answers = lines(&output);
@@ -64,6 +67,11 @@ fn a_batch_answers_line_for_line_in_order() {
             let error = answer["error"].as_str().unwrap();
             assert!(error.starts_with(&format!("<stdin>:{}:", index + 1)), "{error}");
             assert!(error.len() < 300);
+            assert_eq!(
+                error.contains("the line is longer than 4194304 bytes"),
+                index == 10,
+                "{error}"
+            );
         } else {
             assert_eq!(answer["name"], format!("scene {index}"));
         }

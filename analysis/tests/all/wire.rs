@@ -261,6 +261,10 @@ fn a_scene_file_is_a_simulated_board() {
     let expected = (&Value::Null, &"gimbal knob with MT6701".into());
     assert_eq!((&running["refused"], &running["program"]), expected);
     assert_eq!(running["parameters"]["torque"], 0.02);
+    let beyond = haptic(&["tune", "--port", &board.port, "--json", "torque_limit=0.2"]);
+    assert_eq!(beyond.status.code(), Some(1), "{beyond:?}");
+    let why = answer(&beyond)["refused"].to_string();
+    assert!(why.contains("oppose the cogging and the scene's limit of 0.2 N m"), "{why}");
     let refused = haptic(&["board-sim", "none.toml", "--port", &board.port]);
     assert!(complaint(refused).contains("none.toml"));
     let folder = TempDir::new().unwrap();

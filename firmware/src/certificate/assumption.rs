@@ -134,7 +134,9 @@ impl fmt::Display for Assumption {
                     "each torque is held until the next"
                 })?;
                 match period {
-                    Some(period) => write!(f, ", {period} s later: no update is missed"),
+                    Some(period) => {
+                        write!(f, ", {} s later: no update is missed", ShortF64(*period))
+                    }
                     None => Ok(()),
                 }
             }
@@ -171,9 +173,10 @@ impl fmt::Display for Assumption {
             }
             Self::WorstPeriod { longest, delta, .. } => write!(
                 f,
-                "no two counts are more than {longest} s apart: the servo stops otherwise; judged \
+                "no two counts are more than {} s apart: the servo stops otherwise; judged \
                  with the remaining delta of {} N m s/rad, for torques that begin with their count \
                  and for latched ones",
+                ShortF64(*longest),
                 ShortF64(*delta)
             ),
             Self::Delay { samples } => {

@@ -5,7 +5,7 @@ use core::f64::consts::TAU;
 use super::current_loop::{CurrentLoop, HeatLimit, Law, Limits, Output};
 use super::drive::{Drive, DriveError, DriveLimits, Regeneration, Winding};
 use super::modulation::PwmTiming;
-use super::phase::{EncoderIndex, Turn};
+use super::phase::{EncoderIndex, IndexOffset, Turn};
 use super::power_stage::{PowerStage, Thermistor};
 use super::regeneration::Bus;
 use super::response::{CurrentResolution, Plant, TorqueSource};
@@ -60,14 +60,7 @@ impl CurrentLoop {
             return Err(DriveError::IndexNotNeeded);
         }
         if let Some(offset) = index.offset {
-            let counts = self.turn.counts_per_electrical_turn() as f64;
-            let (least, offset) = (LEAST_COUNTS_WITH_INDEX, offset.counts);
-            if counts < least {
-                return Err(DriveError::IndexCounts { counts, least });
-            }
-            if offset as f64 >= counts {
-                return Err(DriveError::IndexOffset { offset, counts });
-            }
+            ok!(self.winding.check_offset(offset, self.turn.counts as f64));
         }
         self.index = Some(index);
         Ok(self)
@@ -78,6 +71,41 @@ impl CurrentLoop {
     #[track_caller]
     pub const fn with_index(self, index: EncoderIndex) -> Self {
         or_refuse!(self.indexed(index))
+    }
+}
+
+impl Winding {
+    /// Checks that an encoder with this many counts in a turn is fine enough for the motor's phase.
+    ///
+    /// # Errors
+    /// If a brushless motor has no pole pairs, or too many.
+    pub const fn check_pole_pairs(self, counts_per_turn: f64) -> Result<(), DriveError> {
+        let Self::Brushless { pole_pairs } = self else { return Ok(()) };
+        let largest = (counts_per_turn / LEAST_ELECTRICAL_COUNTS).min(u16::MAX as f64) as u16;
+        if pole_pairs == 0 || pole_pairs > largest {
+            return Err(DriveError::PolePairs { pole_pairs, largest });
+        }
+        Ok(())
+    }
+
+    /// Checks the offset of a brushless motor's index, at an encoder with this many counts in a turn.
+    ///
+    /// # Errors
+    /// If it is not within an electrical turn, or the encoder is too coarse for it.
+    pub const fn check_offset(
+        self,
+        offset: IndexOffset,
+        counts_per_turn: f64,
+    ) -> Result<(), DriveError> {
+        let counts = counts_per_turn / self.pole_pairs() as f64;
+        let (least, offset) = (LEAST_COUNTS_WITH_INDEX, offset.counts);
+        if counts < least {
+            return Err(DriveError::IndexCounts { counts, least });
+        }
+        if offset as f64 >= counts {
+            return Err(DriveError::IndexOffset { offset, counts });
+        }
+        Ok(())
     }
 }
 
@@ -132,17 +160,14 @@ impl<'a> Design<'a> {
     /// Checks that the encoder is fine enough for the motor's phase, and the phase slow enough for the
     /// modulation.
     const fn check_winding(&self) -> Result<(), DriveError> {
-        let Winding::Brushless { pole_pairs } = self.drive.motor.winding else {
+        let (winding, counts) = (self.drive.motor.winding, self.transducers.counts_per_turn);
+        if !winding.is_brushless() {
             return Ok(());
-        };
-        let counts = self.transducers.counts_per_turn;
+        }
         if counts > LARGEST_COUNTS || (counts as u32) as f64 != counts {
             return Err(DriveError::Counts { counts, largest: LARGEST_COUNTS });
         }
-        let largest = (counts / LEAST_ELECTRICAL_COUNTS).min(u16::MAX as f64) as u16;
-        if pole_pairs == 0 || pole_pairs > largest {
-            return Err(DriveError::PolePairs { pole_pairs, largest });
-        }
+        ok!(winding.check_pole_pairs(counts));
         let turns = self.electrical_speed() / TAU;
         let largest = 1.0 / (INSTANTS_PER_TURN * self.instant);
         if turns > largest {

@@ -62,6 +62,20 @@ impl Description {
         }
     }
 
+    /// The reason why the torques of the scene with these changes are beyond the motor, whether it is certified or not:
+    /// a board that refuses its servo has certified the scene, by readings and a friction that it does not send.
+    ///
+    /// # Errors
+    /// The reason.
+    pub fn check_torques(&self, changes: &[(Parameter, f64)]) -> Result<(), RenderError> {
+        let scene = tuning::apply(&self.scene, changes)?;
+        self.transducers.limiter::<f64>(scene.torque_limit)?;
+        if let Some(anticogging) = &scene.environment.parts().anticogging {
+            self.transducers.check_anticogging(anticogging, scene.torque_limit)?;
+        }
+        Ok(())
+    }
+
     /// The number of the mode that the changes select, if the board has that mode and does not run it: the
     /// table of that mode is only on the board, so the host cannot repeat the step that refused it.
     pub fn other_mode(&self, changes: &[(Parameter, f64)]) -> Option<f64> {

@@ -148,6 +148,11 @@ pub fn refusal_in_words(
     {
         return RequestResult::Refused(refused.1);
     }
+    if step == Step::Servo
+        && let Err(reason) = description.check_torques(&changes)
+    {
+        return RequestResult::Refused(reason.to_string());
+    }
     if let Some(mode) = description.other_mode(&changes) {
         return RequestResult::Refused(RenderError::OtherMode { mode }.to_string());
     }

@@ -7,6 +7,7 @@ use super::key::{self, Key};
 use super::section::Section;
 use crate::chain::{Chain, EncoderPlace, Link, MAX_MASSES, Mass};
 use crate::disturbance::{Cogging, Sine};
+use crate::quantity::significant;
 
 /// The purpose of reading a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,6 +68,7 @@ pub fn device(mut section: Section<'_>, purpose: Purpose) -> Read<DeviceTable> {
         ..Latency::NONE
     };
     alone(&section, &latency)?;
+    followed(&section, &chain, cogging)?;
     let chain = placed(&section, chain, encoder.as_deref())?;
     let is_apart = encoder.is_some() && !chain.is_collocated();
     let key = if is_apart { &key::ENCODER } else { &key::DEVICE };
@@ -87,6 +89,20 @@ fn sine(mut section: Section<'_>, counts: &mut Vec<f64>) -> Read<Sine> {
     }
     counts.push(count);
     Ok(Sine { torque: torque?, count, phase: phase? })
+}
+
+/// A simulation takes the more steps in a tick, the faster the motor's mass swings in its cogging.
+fn followed(section: &Section<'_>, chain: &Chain, cogging: Option<Cogging>) -> Read<()> {
+    let inertias = chain.masses().first().map(|mass| mass.inertia);
+    let rate = cogging.zip(inertias).map_or(0.0, |(cogging, inertia)| cogging.rate(inertia));
+    if rate <= Cogging::LARGEST_RATE {
+        return Ok(());
+    }
+    let (rate, largest) = (significant(rate, 3), Cogging::LARGEST_RATE);
+    let reason = format!(
+        "lets the motor's inertia swing at up to {rate} rad/s, and a simulation follows at most {largest} rad/s"
+    );
+    Err(section.conflict(&key::COGGING, reason))
 }
 
 /// A step response of unknown shape cannot stand beside a lag: no bound is known for both.

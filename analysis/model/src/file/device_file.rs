@@ -85,7 +85,8 @@ pub fn read(source: (&str, &Faults), root: Node) -> Read<DeviceFile> {
         None => limits_step,
     };
     learnt.and_then(|table| table.map(anticogging).transpose())?;
-    motor.and_then(|table| table.map(super::motor::motor).transpose())?;
+    let motor = motor.and_then(|table| table.map(super::motor::motor).transpose())?;
+    motor.map_or(Ok(()), |motor| motor.check_phase(&top, encoder_step))?;
     let table = table.and_then(|table| device(table, Purpose::Simulate))?;
     let chain = lagging(source.1, table.chain, table.latency.actuator_lag)?;
     let transducers = StatedTransducers { encoder_step, full_scale, torque_limit, supply };

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use haptic_servo::certificate::is_static_at_port;
-use haptic_servo::latency::LONGEST_DELAY;
+use haptic_servo::latency::{LONGEST_DELAY, LONGEST_LAG};
 use haptic_servo::magnetic::Chip;
 use haptic_servo::scene::{EncoderReading, Latency, Scene, TimeRange};
 
@@ -75,7 +75,8 @@ impl EncoderTable {
         Ok(of_limits.or(own.map(|counts| TAU / counts)))
     }
 
-    /// Checks that the scene covers the readings of its chip: at its counts, or at the updates of a board's own bridge.
+    /// Checks that the scene covers the readings of its chip: at its counts, or at the updates of a board's own bridge,
+    /// without which no board renders the scene.
     pub fn check_chip(
         &self,
         top: &Section<'_>,
@@ -84,6 +85,11 @@ impl EncoderTable {
         has_bridge: bool,
     ) -> Read<()> {
         let (Some(chip), Some(step)) = (self.chip, step) else { return Ok(()) };
+        if has_bridge && scene.latency.actuator_updates == 0 {
+            let other = key::ACTUATOR_UPDATES.path;
+            let reason = format!("is read before each update of the bridge: state `{other}`");
+            return Err(top.conflict(&key::CHIP, reason));
+        }
         ChipOnBoard { chip, has_bridge }
             .check(scene, counts_per_turn_of(step))
             .map_err(|error| top.conflict(&key::CHIP, format!("has no certificate: {error}")))?;
@@ -112,9 +118,9 @@ impl EncoderTable {
         let read = latency.read_by(Box::leak(Box::new(reading)));
         if is_beyond_longest(&read, scene.timing.period) {
             let reason = format!(
-                "and `{}` are together more than {LONGEST_DELAY} times `{}` = {} s",
+                "and `{}` are together more than {LONGEST_DELAY} times {} = {} s",
                 key::OUTPUT_DELAY.path,
-                key::PERIOD.path,
+                top.stated(&key::PERIOD),
                 scene.timing.period
             );
             return Err(top.conflict(&key::AGE, reason));
@@ -140,18 +146,19 @@ impl EncoderTable {
     /// The times of the scene with the encoder's filter, beside which the age may stand.
     fn within(&self, top: &Section<'_>, scene: &Scene) -> Read<Latency> {
         let (mut latency, period) = (scene.latency, scene.timing.period);
-        let window = self.reading.window;
+        let EncoderReading { age, window, .. } = self.reading;
         let beside = |key: &key::Key, other: &key::Key| {
             Err(top.conflict(key, format!("stands beside `{}`", other.path)))
         };
         // By the mean value theorem.
         let averages = |other: &key::Key| {
-            let (age, TimeRange { least, most }) = (key::AGE.path, self.reading.age);
             let reason = format!(
-                "stands beside `{}`: leave it out, and state `{age} = [{least}, {}]`, as the mean is the position at \
-                 one instant of the window",
+                "stands beside `{}`: leave it out, and state `{} = [{}, {}]`, as the mean is the position at one \
+                 instant of the window",
                 other.path,
-                rounded(most + window, 15)
+                key::AGE.path,
+                age.least,
+                rounded(age.most + window, 15)
             );
             Err(top.conflict(&key::WINDOW, reason))
         };
@@ -159,11 +166,13 @@ impl EncoderTable {
             if !latency.sensor_lag.is_zero() {
                 return beside(&key::READING_LAG, &key::SENSOR_LAG);
             }
+            top.check_time(&key::READING_LAG, self.lag, LONGEST_LAG, period)?;
             latency.sensor_lag = self.lag;
         }
+        let filter = if self.lag.is_zero() { &key::SENSOR_LAG } else { &key::READING_LAG };
         let in_the_way = [
             (&key::ACTUATOR_LAG, latency.actuator_lag),
-            (&key::READING_LAG, latency.sensor_lag),
+            (filter, latency.sensor_lag),
             (&key::ACTUATOR_RESPONSE, latency.actuator_response),
         ];
         if let Some((other, _)) = in_the_way.iter().find(|(_, time)| !time.is_zero())
@@ -175,12 +184,13 @@ impl EncoderTable {
             return beside(&key::READING_LAG, &key::ACTUATOR_RESPONSE);
         }
         if window > period {
-            let reason = format!("is more than `{}` = {period} s", key::PERIOD.path);
+            let reason = format!("is more than {} = {period} s", top.stated(&key::PERIOD));
             return Err(top.conflict(&key::WINDOW, reason));
         }
         if window > 0.0 && latency.actuator_updates > 0 {
             return averages(&key::ACTUATOR_UPDATES);
         }
+        top.check_time(&key::AGE, age, LONGEST_DELAY, period)?;
         Ok(latency)
     }
 }

@@ -5,6 +5,7 @@ use haptic_servo::current::{IndexOffset, Motor, Winding};
 use super::faults::Read;
 use super::key;
 use super::section::Section;
+use super::transducers::counts_per_turn_of;
 
 /// The contents of `[motor]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,6 +51,28 @@ pub fn motor(mut section: Section<'_>) -> Read<FileMotor> {
         inductance: inductance?,
         torque_constant: torque_constant?,
     };
-    let (lowest_supply, highest_supply) = (lowest_supply?, highest_supply?);
-    Ok(FileMotor { motor, lowest_supply, highest_supply, index_offset: offset? })
+    let (lowest_supply, highest_supply, index_offset) = (lowest_supply?, highest_supply?, offset?);
+    if lowest_supply > highest_supply {
+        let reason = format!("is above `{}` = {highest_supply} V", key::HIGHEST_SUPPLY.path);
+        return Err(section.conflict(&key::LOWEST_SUPPLY, reason));
+    }
+    if index_offset.is_some() && !winding.is_brushless() {
+        let reason =
+            format!("stands without `{}`: a brushed motor has no phase", key::POLE_PAIRS.path);
+        return Err(section.conflict(&key::INDEX_OFFSET, reason));
+    }
+    Ok(FileMotor { motor, lowest_supply, highest_supply, index_offset })
+}
+
+impl FileMotor {
+    /// Checks the phase of the motor at an encoder with this angle in rad of a count; nothing is known without one.
+    pub fn check_phase(&self, top: &Section<'_>, encoder_step: Option<f64>) -> Read<()> {
+        let Some(step) = encoder_step else { return Ok(()) };
+        let (winding, counts) = (self.motor.winding, counts_per_turn_of(step));
+        let refused = |key, error| top.conflict(key, format!("cannot be used: {error}"));
+        winding.check_pole_pairs(counts).map_err(|error| refused(&key::POLE_PAIRS, error))?;
+        let Some(offset) = self.index_offset else { return Ok(()) };
+        let offset = winding.check_offset(offset, counts);
+        offset.map_err(|error| refused(&key::INDEX_OFFSET_COUNTS, error))
+    }
 }

@@ -24,8 +24,10 @@ pub enum Problem {
     #[error("the file cannot be read: {0}")]
     Unreadable(String),
     /// More bytes than a scene can need.
-    #[error("the file is longer than {bound} bytes, the most that is read")]
+    #[error("the {part} is longer than {bound} bytes, the most that is read")]
     TooLong {
+        /// The file, or the line of it that a scene is on.
+        part: &'static str,
         /// Largest length in bytes.
         bound: u64,
     },

@@ -4,7 +4,7 @@ use haptic_servo::environment::{Coefficients, Environment, MAX_DEGREE, MAX_DELAY
 use haptic_servo::host::HostTorque;
 use haptic_servo::latency::{LONGEST_DELAY, LONGEST_LAG};
 use haptic_servo::magnetic::Chip;
-use haptic_servo::scene::{Coupling, Latency, Scene, TimeRange, Timing};
+use haptic_servo::scene::{Coupling, Latency, Scene, Timing};
 
 use super::anticogging;
 use super::device::{self, DeviceTable, Purpose};
@@ -130,7 +130,7 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
     let supply = supplied.and_then(|table| table.map(|it| supply(it, largest)).transpose());
     let host = host.and_then(|table| table.map(host::host).transpose());
     let driven = driven.and_then(|table| table.map(motor).transpose());
-    let (name, table, reading, learnt) = (name?, device?, reading?, learnt?);
+    let (name, table, reading, learnt, motor) = (name?, device?, reading?, learnt?, driven?);
     let [torque_limit, encoder_step, full_scale] = limits?;
     let (servo, coupling, environment) = (servo?, coupling?, environment?);
     let (environment, shapes) = match environment {
@@ -154,14 +154,14 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
     if let Some(reading) = reading {
         scene = reading.read(&top, scene, friction)?;
         encoder_step = reading.step(&top, encoder_step)?;
-        let has_motor = driven.as_ref().is_ok_and(Option::is_some);
-        reading.check_chip(&top, &scene, encoder_step, has_motor)?;
+        reading.check_chip(&top, &scene, encoder_step, motor.is_some())?;
         chip = reading.chip;
     }
+    motor.map_or(Ok(()), |motor| motor.check_phase(&top, encoder_step))?;
     if let Some(learnt) = learnt {
         scene = anticogging::beside(&top, scene, learnt, friction, full_scale)?;
     }
-    let (simulation, hand, host, supply, motor) = (simulation?, hand?, host?, supply?, driven?);
+    let (simulation, hand, host, supply) = (simulation?, hand?, host?, supply?);
     let taken = torque_limit.map(|limit| limit + scene.environment.parts().against_cogging());
     host::check(&top, host.as_ref(), [taken, full_scale], simulation.as_ref())?;
     Ok(SceneFile {
@@ -216,7 +216,7 @@ fn servo_of(mut section: Section<'_>) -> Read<Servo> {
         ..Latency::NONE
     };
     if worst_period.is_some_and(|worst| worst < period) {
-        let reason = format!("is shorter than `{}` = {period} s", key::PERIOD.path);
+        let reason = format!("is shorter than {} = {period} s", section.stated(&key::PERIOD));
         return Err(section.conflict(&key::WORST_PERIOD, reason));
     }
     Ok(Servo { timing: Timing { period, worst_period }, latency })
@@ -225,15 +225,7 @@ fn servo_of(mut section: Section<'_>) -> Read<Servo> {
 /// Checks the times between count and torque, each with a bound that depends on other keys.
 fn check_latency(top: &Section<'_>, timing: &Timing, latency: &Latency, is_late: bool) -> Read<()> {
     let period = timing.period;
-    let within = |(key, time, longest): (&Key, TimeRange, f64)| {
-        if time.most <= longest * period {
-            return Ok(());
-        }
-        let name = key::PERIOD.path;
-        let times = if longest == 1.0 { String::new() } else { format!("{longest} times ") };
-        let reason = format!("is more than {times}`{name}` = {period} s, the most that it may be");
-        Err(top.conflict(key, reason))
-    };
+    let within = |(key, time, longest)| top.check_time(key, time, longest, period);
     let output_delay = within((&key::OUTPUT_DELAY, latency.output_delay, LONGEST_DELAY));
     let others = [
         (&key::ACTUATOR_LAG, latency.actuator_lag, LONGEST_LAG),
@@ -247,7 +239,7 @@ fn check_latency(top: &Section<'_>, timing: &Timing, latency: &Latency, is_late:
         Err(_) => f64::INFINITY,
     };
     let jitter = (latency.output_jitter > largest).then(|| {
-        let reason = format!("is {}", more_than_time_to_torque(latency, largest));
+        let reason = format!("is {}", more_than_time_to_torque(top, latency, largest));
         top.conflict(&key::OUTPUT_JITTER, reason)
     });
     output_delay?;
@@ -257,9 +249,10 @@ fn check_latency(top: &Section<'_>, timing: &Timing, latency: &Latency, is_late:
     updates::check(top, latency, timing)
 }
 
-fn more_than_time_to_torque(latency: &Latency, largest: f64) -> String {
+fn more_than_time_to_torque(top: &Section<'_>, latency: &Latency, largest: f64) -> String {
     let least = latency.output_delay.least;
-    let late = if largest > least { format!(" and `{}`", key::PERIOD.path) } else { String::new() };
+    let period = top.stated(&key::PERIOD);
+    let late = if largest > least { format!(" and {period}") } else { String::new() };
     format!(
         "more than the least `{}` = {least} s{late}: no torque comes before its count",
         key::OUTPUT_DELAY.path
@@ -279,15 +272,17 @@ fn check_count_jitter(
         jitter => format!("and `{}` = {jitter} s are together", key::OUTPUT_JITTER.path),
     };
     let reason = match latency.bound_on_two_jitters(timing.period) {
-        _ if sum > largest => format!("{beside} {}", more_than_time_to_torque(latency, largest)),
+        _ if sum > largest => {
+            format!("{beside} {}", more_than_time_to_torque(top, latency, largest))
+        }
         _ if !latency.jitters_twice() => return Ok(()),
         None => format!(
             "stands beside `{}` and a lag of which only a range is known, for which there is no proof",
             key::OUTPUT_JITTER.path
         ),
         Some(bound) if sum >= bound => format!(
-            "{beside} not below {bound} s, half of what the ranges of delay and response leave of `{}`",
-            key::PERIOD.path
+            "{beside} not below {bound} s, half of what the ranges of delay and response leave of {}",
+            top.stated(&key::PERIOD)
         ),
         Some(_) => return Ok(()),
     };

@@ -170,6 +170,17 @@ impl<'t> Section<'t> {
         }
     }
 
+    /// The name of that key in a message; of a key whose number another states, of [`key::RECIPROCALS`], by that.
+    pub fn stated(&self, key: &Key) -> String {
+        let other = key::RECIPROCALS
+            .iter()
+            .find(|(other, of, _)| *of == key && self.place(other).is_some());
+        match other {
+            Some((other, _, product)) => format!("{product}/`{}`", other.path),
+            None => format!("`{}`", key.path),
+        }
+    }
+
     /// The number of that key. Where it is left out, it is the key's default, if that has one.
     pub fn number(&mut self, key: &Key) -> Read<f64> {
         let is_needed = self.needed.contains(&key);
@@ -210,6 +221,17 @@ impl<'t> Section<'t> {
             return Err(self.conflict(key, reason));
         }
         Ok(time)
+    }
+
+    /// Checks that the time of that key is at most `longest` periods of the servo.
+    pub fn check_time(&self, key: &Key, time: TimeRange, longest: f64, period: f64) -> Read<()> {
+        if time.most <= longest * period {
+            return Ok(());
+        }
+        let name = self.stated(&key::PERIOD);
+        let times = if longest == 1.0 { String::new() } else { format!("{longest} times ") };
+        let reason = format!("is more than {times}{name} = {period} s, the most that it may be");
+        Err(self.conflict(key, reason))
     }
 
     /// The whole number of that key, as [`Section::number`].

@@ -98,8 +98,8 @@ fn latency(section: &mut Section<'_>, period: f64) -> Read<f64> {
         return Ok(latency);
     }
     let reason = format!(
-        "is not shorter than `{}` = {period} s; whole ticks are `{}`",
-        key::PERIOD.path,
+        "is not shorter than {} = {period} s; whole ticks are `{}`",
+        section.stated(&key::PERIOD),
         key::DELAY_SAMPLES.path
     );
     Err(section.conflict(&key::LATENCY, reason))

@@ -8,7 +8,7 @@ use super::problem::{Fault, FileError, Problem};
 use super::tree::{Node, Value};
 use super::{json, toml};
 
-/// Longest scene file in bytes: a hundred times the longest that is written by hand, and still read quickly.
+/// Longest scene file in bytes, and line of a batch: a hundred times the longest that is written by hand, and still read quickly.
 pub const MAX_BYTES: u64 = 4 << 20;
 
 /// The two formats of a scene.
@@ -42,7 +42,7 @@ pub fn bounded(source: impl std::io::Read) -> Result<Vec<u8>, Problem> {
     let mut bytes = Vec::new();
     source.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
     if bytes.len() as u64 > MAX_BYTES {
-        return Err(Problem::TooLong { bound: MAX_BYTES });
+        return Err(Problem::TooLong { part: "file", bound: MAX_BYTES });
     }
     Ok(bytes)
 }

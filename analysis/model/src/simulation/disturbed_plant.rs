@@ -113,7 +113,7 @@ impl DisturbedPlant {
             let one = |halving| step(plant, discretization.method, omega, length(halving));
             (0..=HALVINGS).map(one).collect()
         };
-        let oscillation = (disturbance.cogging.slope() / plant.motor_inertia()).sqrt();
+        let oscillation = disturbance.cogging.rate(plant.motor_inertia());
         let part = |(early, Pieces { count, length, steps, since }): (bool, Pieces)| {
             let fine = (oscillation * length / LONGEST_STEP).ceil() as u32;
             let steps = steps.max(LEAST_STEPS).max(fine);
