@@ -8,7 +8,8 @@ use super::problem::{Fault, FileError, Problem};
 use super::tree::{Node, Value};
 use super::{json, toml};
 
-/// Longest scene file in bytes, and line of a batch: a hundred times the longest that is written by hand, and still read quickly.
+/// Longest scene file in bytes, and line of a batch: a hundred times the longest that is written by hand, and still
+/// read quickly.
 pub const MAX_BYTES: u64 = 4 << 20;
 
 /// The two formats of a scene.
