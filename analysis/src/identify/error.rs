@@ -39,8 +39,9 @@ pub enum IdentifyError {
     #[error(
         "the sine of {} N m at {} Hz moved the device by a torque with {:.1} % \
          of harmonics that were not commanded: the amplifier clips there, at its limit of current or \
-         of voltage. Lower the amplitude of this tone and of those above it \
-         (firmware/src/bin/identify.rs), or raise the amplifier's limit, and measure again",
+         of voltage, or the encoder's hysteresis is a large part of the motion. Lower the amplitude of this tone \
+         and of those above it (firmware/src/bin/identify.rs), or raise the amplifier's limit; for an encoder with \
+         hysteresis raise the amplitude; and measure again",
         significant(*.amplitude, 3),
         significant(*.frequency, 3),
         100.0 * .part

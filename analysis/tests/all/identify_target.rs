@@ -119,10 +119,31 @@ fn a_turned_motor_s_cogging_is_opposed_on_a_board() {
 /// 0.01, and by one without errors.
 #[test]
 fn a_second_encoder_shows_linearity_and_age_for_the_file() {
-    use std::f64::consts::TAU;
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     let (record, file) = (path("both.csv"), path("knob.toml"));
+    let device =
+        "[device]\ninertia = 3e-5\ndamping = 0.001\n[encoder]\nage = [0.0, 1e-4] # stated\n";
+    std::fs::write(&file, device).unwrap();
+    let counts = ["--counts-per-rev", "16384", "--reference-per-rev", "40000"];
+    let identified = |error: f64| {
+        std::fs::write(&record, two_encoders(error)).unwrap();
+        haptic(&[&["identify", &record, "-o", &file], &counts[..]].concat())
+    };
+    let refused = String::from_utf8(identified(1.5).stderr).unwrap();
+    assert!(refused.contains(" and has to be less than 1"), "{refused}");
+    assert_eq!(std::fs::read_to_string(&file).unwrap(), device);
+    let said = String::from_utf8(identified(0.01).stdout).unwrap();
+    assert!(said.contains(" s, within the 0 to 0.0001 s that the file states"), "{said}");
+    let written = std::fs::read_to_string(&file).unwrap();
+    for number in ["linearity = 0.010", "hysteresis = 0.0", "age = [7."] {
+        assert!(written.contains(number), "{written}");
+    }
+}
+
+/// A record of two encoders, of which the first is 80 us late and off by this error in rad, once in a turn.
+fn two_encoders(error: f64) -> String {
+    use std::f64::consts::TAU;
     let mut text = "time,counts,reference\n".to_owned();
     let (mut from, mut row) = (0.3, 0_u32);
     for speed in [6.0, -6.0, 12.0, -12.0_f64] {
@@ -133,7 +154,7 @@ fn a_second_encoder_shows_linearity_and_age_for_the_file() {
             // Noise of a count, as an encoder has it.
             let noise = f64::from(row * 7919 % 1000) / 500.0 - 1.0;
             let count = |angle: f64, counts: f64| (angle / TAU * counts + noise).floor();
-            let (shown, reference) = (old + 0.01 * old.sin(), at(time));
+            let (shown, reference) = (old + error * old.sin(), at(time));
             text += &format!(
                 "{},{},{}\n",
                 1e-3 * f64::from(row),
@@ -144,14 +165,5 @@ fn a_second_encoder_shows_linearity_and_age_for_the_file() {
         }
         from += speed * 1e-3 * ticks as f64;
     }
-    std::fs::write(&record, text).unwrap();
-    let device =
-        "[device]\ninertia = 3e-5\ndamping = 0.001\n[encoder]\nage = [0.0, 1e-4] # stated\n";
-    std::fs::write(&file, device).unwrap();
-    let counts = ["--counts-per-rev", "16384", "--reference-per-rev", "40000"];
-    let output = haptic(&[&["identify", &record, "-o", &file], &counts[..]].concat());
-    let said = String::from_utf8(output.stdout).unwrap();
-    assert!(said.contains(" s, within the 0 to 0.0001 s that the file states"), "{said}");
-    let written = std::fs::read_to_string(&file).unwrap();
-    assert!(written.contains("linearity = 0.010") && written.contains("age = [7."), "{written}");
+    text
 }

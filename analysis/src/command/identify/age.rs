@@ -29,14 +29,13 @@ impl KnownDelays {
     /// Those of a command: of the file that it writes, or of the simulated one.
     pub fn of(arguments: &Arguments) -> Result<Self, CommandError> {
         let written = arguments.output.as_deref().filter(|path| path.exists());
-        let simulated = arguments.file.as_deref().filter(|_| arguments.target.target.is_some());
-        let path = written.or(simulated);
-        let declared = arguments.reading.torque_delay;
+        // A new file has the encoder of the simulated one.
+        let path = written.or(arguments.simulated());
         let (chip, stated) = path.map(chip_and_age).transpose()?.unwrap_or_default();
         Ok(Self {
             stated,
-            has_chip: written.and(chip).is_some(),
-            torque_delay: stated.and((declared > 0.0).then_some(declared)),
+            has_chip: chip.is_some(),
+            torque_delay: stated.and(arguments.reading.torque_delay),
             is_age_known: arguments.reading.count_delay > 0.0,
         })
     }

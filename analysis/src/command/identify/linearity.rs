@@ -52,7 +52,7 @@ pub fn run(
     let found = identify::linearity(&pair, [counts_per_turn, reference])?;
     let written = arguments.output.as_deref().map(age::chip_and_age);
     let (chip, stated) = written.transpose()?.unwrap_or_default();
-    let numbers = numbers(&found, chip.is_none());
+    let numbers = numbers(&found, chip.is_none(), counts_per_turn)?;
     if let Some(path) = &arguments.output {
         write(path, &with_numbers(path, &numbers, counts_per_turn)?)?;
     }
@@ -72,16 +72,39 @@ pub fn run(
     Ok(CommandStatus::Success)
 }
 
-fn numbers(found: &Linearity, is_age_free: bool) -> Vec<Number> {
+/// The numbers of the device's file.
+///
+/// # Errors
+/// If some angles are read twice: the slope of the error, which a file bounds by 1, is as large as that of the angle.
+fn numbers(
+    found: &Linearity,
+    is_age_free: bool,
+    counts_per_turn: f64,
+) -> Result<Vec<Number>, CommandError> {
+    let slope = found.slope.hi * (1.0 + 5e-3);
+    if slope >= 1.0 {
+        let slope = significant(slope, 3);
+        let error = format!(
+            "the slope of the error, `encoder.linearity`, is up to {slope} and has to be less than 1: the encoder reads \
+             some angles twice. Check the counts per turn of both encoders, and the place of the magnet"
+        );
+        return Err(CommandError::Failed(error.into()));
+    }
     let linearity = Number {
         table: "encoder",
         key: "linearity",
         // Rounded up.
-        value: significant(found.slope.hi * (1.0 + 5e-3), 3),
+        value: significant(slope, 3),
         comment: "largest slope of the error, at 95 %".into(),
     };
     let age = found.age.filter(|age| is_age_free && age.hi > 0.0).map(|age| age::number(&age));
-    [Some(linearity), age].into_iter().flatten().collect()
+    let hysteresis = Number {
+        table: "encoder",
+        key: "hysteresis",
+        value: significant(found.hysteresis.hi.max(0.0) * counts_per_turn / TAU * (1.0 + 5e-3), 3),
+        comment: "counts, at 95 %".into(),
+    };
+    Ok([Some(linearity), Some(hysteresis), age].into_iter().flatten().collect())
 }
 
 fn text(

@@ -20,7 +20,7 @@ use super::output_file::{FileArgument, check_writable, refuse_overwriting};
 use super::shared_arguments::{JsonOption, write};
 use super::status::{CommandError, CommandStatus};
 use super::value_parsers::{bounded, positive};
-use crate::file::{self, StatedTransducers};
+use crate::file::{self, StatedTransducers, key};
 use crate::identify::record::Recorder;
 use crate::identify::{
     self, Correction, Disk, Estimate, Identification, Latency, Record, torque_source,
@@ -57,7 +57,8 @@ pub struct Arguments {
     pub turns: bool,
     /// The record is of whole turns with two encoders on the shaft, in the columns `counts` and `reference`, and
     /// shows the nonlinearity and the age of the first: counts of the second per turn
-    #[arg(long, value_name = "N", value_parser = positive, conflicts_with_all = ["turns", "measured", "settle", "longest_lag"],
+    #[arg(long, value_name = "N", value_parser = positive, conflicts_with_all = ["turns", "measured", "settle", "longest_lag", "torque_delay", "count_delay",
+          "torque_noise", "skew", "output_delay", "seed"],
           requires = "file", allow_negative_numbers = true)]
     pub reference_per_rev: Option<f64>,
     #[command(flatten)]
@@ -77,9 +78,8 @@ pub struct Arguments {
 #[derive(Debug, Args)]
 pub struct Reading {
     /// Time from the time stamp of a row until its torque is applied, in s, at most 0.1
-    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = delay,
-          allow_negative_numbers = true)]
-    pub torque_delay: f64,
+    #[arg(long, value_name = "S", value_parser = delay, allow_negative_numbers = true)]
+    pub torque_delay: Option<f64>,
     /// Age of the counts of a row at its time stamp, in s, at most 0.1
     #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = delay,
           allow_negative_numbers = true)]
@@ -102,7 +102,7 @@ impl Reading {
     /// The stated corrections of the measurement, with `settle` as the default.
     fn correction(&self, counts_per_turn: f64, settle: f64) -> Correction {
         Correction {
-            torque_delay: self.torque_delay,
+            torque_delay: self.torque_delay.unwrap_or(0.0),
             count_delay: self.count_delay,
             settle: self.settle.unwrap_or(settle),
             longest_lag: self.longest_lag,
@@ -221,7 +221,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let table = device_table(&found, &delays);
     let mut table = match arguments.output.as_deref().filter(|path| path.exists()) {
         Some(path) => device_file::replaced(path, &table, counts_per_turn)?,
-        None => device_file(&table, counts_per_turn, full_scale),
+        None => device_file(&table, arguments, counts_per_turn, full_scale)?,
     };
     if let Some(age) = age.filter(|_| delays.is_age_free()) {
         let path = arguments.output.as_deref().unwrap_or(Path::new("the device"));
@@ -252,6 +252,13 @@ fn check_files(arguments: &Arguments) -> Result<(), CommandError> {
     ];
     refuse_overwriting(&[FileArgument::of("FILE", file.as_deref())], &outputs)?;
     outputs.into_iter().flatten().try_for_each(|output| check_writable(output.path))
+}
+
+impl Arguments {
+    /// The file of the device that is simulated.
+    fn simulated(&self) -> Option<&Path> {
+        self.file.as_deref().filter(|_| self.target.target.is_some())
+    }
 }
 
 /// The largest nonlinearity of the encoder in the files that say something of it: a simulated device's, and that of
@@ -515,7 +522,12 @@ fn latency_lines(found: &Identification, delays: &KnownDelays) -> String {
 }
 
 /// The device file: the device, its encoder, and its motor if that is known.
-fn device_file(table: &str, counts_per_turn: f64, full_scale: Option<f64>) -> String {
+fn device_file(
+    table: &str,
+    arguments: &Arguments,
+    counts_per_turn: f64,
+    full_scale: Option<f64>,
+) -> Result<String, CommandError> {
     let step = std::f64::consts::TAU / counts_per_turn;
     let full_scale = match full_scale {
         Some(torque) => format!("full_scale = {torque:?} # N m, as the program states it"),
@@ -523,9 +535,20 @@ fn device_file(table: &str, counts_per_turn: f64, full_scale: Option<f64>) -> St
             "# full_scale = the motor's torque in N m at the largest code; a board needs it".into()
         }
     };
-    format!(
-        "{table}\n[limits]\nencoder_step = {step:?} # rad, {counts_per_turn} counts per turn\n{full_scale}\n"
-    )
+    let reading = arguments.simulated().map(reading).transpose()?.unwrap_or_default();
+    Ok(format!(
+        "{table}{reading}\n[limits]\nencoder_step = {step:?} # rad, {counts_per_turn} counts per turn\n{full_scale}\n"
+    ))
+}
+
+/// The table of the readings of a simulated device's encoder, which its measured delay is without; empty where its
+/// file has none. The limits have its counts.
+fn reading(simulated: &Path) -> Result<String, CommandError> {
+    let file = file::load_json(&simulated.to_string_lossy())?;
+    let keys = file.get(key::READING.path).and_then(serde_json::Value::as_object);
+    let lines = keys.into_iter().flatten().filter(|(name, _)| *name != key::READING_COUNTS.name());
+    let lines: String = lines.map(|(name, value)| format!("{name} = {value}\n")).collect();
+    Ok(if lines.is_empty() { lines } else { format!("\n[encoder] # as it was stated\n{lines}") })
 }
 
 fn device_table(found: &Identification, delays: &KnownDelays) -> String {
@@ -545,7 +568,8 @@ fn device_table(found: &Identification, delays: &KnownDelays) -> String {
             // Rounded down.
             significant(passivity * (1.0 - 5e-4), 4),
         ),
-        None => "# passivity: none; do not certify with this device\n".to_owned(),
+        // Else a scene would certify with all of the damping.
+        None => "passivity = 0.0 # none: nothing certifies with this device\n".to_owned(),
     };
     let latency = latency_lines(found, delays);
     let at_least = 0.5 * found.friction.lo;
