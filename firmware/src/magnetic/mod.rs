@@ -269,7 +269,7 @@ sentences! {
          lag between " {from} " and " {to} " s: state a lag that covers it"),
     Phase { chip: &'static str, phase: f64, shortest: f64 } => (
         "the scene puts a torque out " {phase} " s after its count, and a board that waits for the transfer of " {chip}
-         " needs " {shortest} " s"),
+         " needs " {shortest} " s: state an output delay of at least that, or none"),
     }
 }
 
