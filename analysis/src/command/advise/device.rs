@@ -235,12 +235,17 @@ fn missing(file: &SceneFile) -> Vec<&'static str> {
     needed.into_iter().filter(|(_, is_stated)| !is_stated).map(|(key, _)| key.path).collect()
 }
 
-/// The peak torque in N m of a detent that can be told apart: twice that of friction and of the cogging that nothing
-/// opposes.
+/// The peak torque in N m of a detent that can be told apart: twice that of friction and of the cogging that remains.
 fn detent_torque(file: &SceneFile) -> f64 {
     let Disturbance { friction, cogging } = file.disturbance();
-    let opposed = file.scene.environment.parts().anticogging.map_or(0.0, |learnt| learnt.share);
-    2.0 * (friction + (1.0 - opposed) * cogging.torque())
+    let Scene { environment, latency, .. } = &file.scene;
+    let remains = match environment.parts().anticogging {
+        Some(learnt) if file.cogging.is_some() => {
+            cogging.remaining(&learnt, latency.encoder.linearity)
+        }
+        _ => cogging.torque(),
+    };
+    2.0 * (friction + remains)
 }
 
 /// The part of the cogging that can be opposed with all of the device's passivity and the times of a scene: of the
