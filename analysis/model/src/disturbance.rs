@@ -4,6 +4,8 @@ use std::f64::consts::TAU;
 
 use haptic_servo::environment::{Anticogging, CoggingError};
 
+use crate::simulation::shown;
+
 /// Cogging: the torque of the magnets on the rotor, which no current makes. It takes no energy in a turn.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cogging {
@@ -71,6 +73,24 @@ impl Cogging {
         Anticogging::learnt(&torques.collect::<Vec<_>>(), units)
     }
 
+    /// The largest torque in N m of it together with what opposes it, which reads its map through an encoder of this
+    /// [linearity](shown). It is the largest of samples, 16 or more between two angles of the map and in a period of
+    /// the highest harmonic: enough for a torque to be told apart, and no bound.
+    pub fn remaining(&self, learnt: &Anticogging, linearity: f64) -> f64 {
+        let map: Vec<f64> = learnt.torques().collect();
+        let samples = 16 * map.len().max(self.highest() as usize);
+        let opposed = |angle: f64| {
+            let place = (angle / TAU).rem_euclid(1.0) * map.len() as f64;
+            let [from, to] = [0, 1].map(|next| map[(place as usize + next) % map.len()]);
+            learnt.share * (from + (to - from) * place.fract())
+        };
+        let remains = |i: usize| {
+            let angle = TAU * i as f64 / samples as f64;
+            self.at(angle) - opposed(shown(angle, linearity))
+        };
+        (0..samples).map(|i| remains(i).abs()).fold(0.0, f64::max)
+    }
+
     /// Bound on its steepest slope in N m/rad.
     pub fn slope(&self) -> f64 {
         self.harmonics.iter().map(|it| it.torque * it.count).sum()
@@ -107,4 +127,44 @@ impl Disturbance {
 #[cfg(test)]
 pub fn sine(torque: f64, count: f64) -> Cogging {
     Cogging::of(vec![Sine { torque, count, phase: 0.0 }])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    /// A map against what it was learnt of leaves the sagitta of its chords, half of a period off it doubles
+    /// the cogging, and of a share the rest remains.
+    #[test]
+    fn a_map_leaves_little_of_its_own_cogging_and_doubles_the_opposite() {
+        let [cogging, opposite] =
+            [0.0, PI].map(|phase| Cogging::of(vec![Sine { torque: 0.005, count: 84.0, phase }]));
+        let learnt = cogging.learnt(2048).unwrap();
+        let chord = 0.005 * (1.0 - (84.0 * PI / 2048.0).cos());
+        let remains = cogging.remaining(&learnt, 0.0);
+        assert!((0.9 * chord..chord + 5e-7).contains(&remains), "{remains} {chord}");
+        let near = |remains: f64, expected: f64| {
+            assert!((remains / expected - 1.0).abs() < 1e-3, "{remains} {expected}");
+        };
+        near(opposite.remaining(&learnt, 0.0), 0.01);
+        near(opposite.remaining(&learnt.sharing(0.4), 0.0), 0.007);
+        near(Cogging::default().remaining(&learnt, 0.0), 0.005);
+        assert!((cogging.remaining(&learnt.sharing(0.4), 0.0) - 0.003).abs() < 0.5 * chord);
+    }
+
+    /// The map is over the angle that the encoder shows.
+    #[test]
+    fn a_map_is_read_through_the_encoder() {
+        const LINEARITY: f64 = 0.04;
+        let cogging = sine(0.005, 84.0);
+        let angle_of = |shown_angle: f64| {
+            (0..40).fold(shown_angle, |angle, _| shown_angle - LINEARITY * angle.sin())
+        };
+        let torques = (0..2048).map(|i| cogging.at(angle_of(TAU * f64::from(i) / 2048.0)));
+        let units = vec![0; 2048].leak();
+        let learnt = Anticogging::learnt(&torques.collect::<Vec<_>>(), units).unwrap();
+        assert!(cogging.remaining(&learnt, LINEARITY) < 1e-4);
+        assert!(cogging.remaining(&learnt, 0.0) > 0.009);
+    }
 }

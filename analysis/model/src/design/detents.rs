@@ -17,7 +17,7 @@ use crate::quantity::significant;
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum NoDetents {
     /// The motor is too weak.
-    #[error("{} N m, twice that of friction and cogging, are more than the {} N m of the motor",
+    #[error("{} N m, twice that of friction and of the cogging that remains, are more than the {} N m of the motor",
             significant(*torque, 3), significant(*motor, 3))]
     Motor {
         /// Peak torque of each in N m.

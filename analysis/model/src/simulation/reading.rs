@@ -65,8 +65,7 @@ impl Reading {
 
     fn read(&mut self, position: f64) -> f64 {
         let EncoderReading { linearity, noise, hysteresis, .. } = *self.encoder;
-        // The steepest error of one period in a turn.
-        let angle = if linearity == 0.0 { position } else { position + linearity * position.sin() };
+        let angle = shown(position, linearity);
         let Some(step) = self.step else { return angle };
         let angle = match noise {
             0.0 => angle,
@@ -77,6 +76,11 @@ impl Reading {
         self.held = Some(held);
         held
     }
+}
+
+/// The angle in rad that an encoder of this linearity shows, with the steepest error of one period in a turn.
+pub(crate) fn shown(angle: f64, linearity: f64) -> f64 {
+    if linearity == 0.0 { angle } else { angle + linearity * angle.sin() }
 }
 
 #[cfg(test)]

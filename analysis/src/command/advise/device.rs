@@ -7,6 +7,7 @@ use clap::Args;
 use haptic_servo::certificate::{QuantizationBound, passivity_for_anticogging};
 use haptic_servo::environment::{MOST_KNOTS, Wall};
 use haptic_servo::number::Format;
+use haptic_servo::parameter::Parameter;
 use haptic_servo::period;
 use haptic_servo::scene::{Coupling, Device, Scene};
 use haptic_servo::servo::BuildError;
@@ -22,6 +23,7 @@ use crate::disturbance::Disturbance;
 use crate::file::{self, SceneFile, key};
 use crate::quantity::{rounded, significant};
 use crate::text_table::table_of;
+use crate::verdict::judge_file;
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -62,6 +64,10 @@ struct Report {
     stiffness: Option<f64>,
     /// The key without which no wall certifies.
     needed: Option<&'static str>,
+    /// Why not even a wall without stiffness certifies, and a change with which it does; null where one does, and
+    /// where it is for the needed key.
+    rejection: Option<String>,
+    remedy: Option<String>,
     structure: Option<&'static str>,
     /// Largest torque error in N m of that wall at rest; null without counts of an encoder.
     torque_error: Option<f64>,
@@ -193,6 +199,9 @@ fn report(file: &SceneFile, search: &Search) -> Report {
         let silent = felt_silently(period, certified.as_ref());
         Point { rate: rounded(period.recip(), 6), certified: certified.map(|it| it.felt), silent }
     });
+    let needed = needed(&file.scene.device);
+    let rejected = (best.is_none() && needed.is_none()).then(|| rejected(file)).flatten();
+    let (rejection, remedy) = rejected.unzip();
     let torque = detent_torque(file);
     let detents = silent
         .as_ref()
@@ -203,7 +212,9 @@ fn report(file: &SceneFile, search: &Search) -> Report {
         name: file.name.clone(),
         rate: rounded(period.recip(), 6),
         stiffness: best.map(|wall| wall.felt),
-        needed: needed(&file.scene.device),
+        needed,
+        rejection,
+        remedy: remedy.flatten(),
         structure: best.map(|wall| wall.structure.name()),
         torque_error: file.encoder_step.and(rest).map(|it| it.hum()),
         friction: file.friction,
@@ -225,6 +236,15 @@ fn needed(device: &Device) -> Option<&'static str> {
     (device.passivity() == 0.0).then_some(key.path)
 }
 
+/// The reason why the wall of a file is rejected even without stiffness, and the first of the remedies; `None` if it
+/// is not.
+fn rejected(file: &SceneFile) -> Option<(String, Option<String>)> {
+    let scene = file.scene.with(Parameter::Stiffness, 0.0)?;
+    let report = judge_file(&SceneFile { scene, ..file.clone() }, Format::F64);
+    let is_rejected = !report.passes();
+    is_rejected.then(|| (report.summary, report.remedies.into_iter().next()))
+}
+
 /// The keys that a bound on the torque at rest and the friction against it need.
 fn missing(file: &SceneFile) -> Vec<&'static str> {
     let needed = [
@@ -235,12 +255,17 @@ fn missing(file: &SceneFile) -> Vec<&'static str> {
     needed.into_iter().filter(|(_, is_stated)| !is_stated).map(|(key, _)| key.path).collect()
 }
 
-/// The peak torque in N m of a detent that can be told apart: twice that of friction and of the cogging that nothing
-/// opposes.
+/// The peak torque in N m of a detent that can be told apart: twice that of friction and of the cogging that remains.
 fn detent_torque(file: &SceneFile) -> f64 {
     let Disturbance { friction, cogging } = file.disturbance();
-    let opposed = file.scene.environment.parts().anticogging.map_or(0.0, |learnt| learnt.share);
-    2.0 * (friction + (1.0 - opposed) * cogging.torque())
+    let Scene { environment, latency, .. } = &file.scene;
+    let remains = match environment.parts().anticogging {
+        Some(learnt) if file.cogging.is_some() => {
+            cogging.remaining(&learnt, latency.encoder.linearity)
+        }
+        _ => cogging.torque(),
+    };
+    2.0 * (friction + remains)
 }
 
 /// The part of the cogging that can be opposed with all of the device's passivity and the times of a scene: of the
@@ -307,7 +332,10 @@ fn text(report: &Report) -> String {
     let certified = report.stiffness.map_or_else(
         || match report.needed {
             Some(key) => format!("none: `{key}` is 0, and a device without it is not passive"),
-            None => "none".to_owned(),
+            None => match &report.rejection {
+                Some(why) => format!("none: {}", why.trim_start_matches("rejected: ")),
+                None => "none".to_owned(),
+            },
         },
         |felt| format!("{}, {}", stiffness(felt), report.structure.unwrap_or_default()),
     );
@@ -343,6 +371,9 @@ fn text(report: &Report) -> String {
         }
         (None, Some(Lever { change, factor })) if *factor > 1.005 => {
             format!("{change}: {} x", significant(*factor, 3))
+        }
+        (None, None) if report.stiffness.is_none() => {
+            report.remedy.clone().unwrap_or_else(|| "no single change is enough".to_owned())
         }
         (None, _) => "no single change earns more".to_owned(),
     };
