@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use haptic_servo::environment::{Anticogging, CoggingError};
 
-use crate::simulation::shown;
+use crate::nonlinear_encoder::shown;
 
 /// Cogging: the torque of the magnets on the rotor, which no current makes. It takes no energy in a turn.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

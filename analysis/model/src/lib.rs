@@ -65,6 +65,7 @@ pub mod file;
 pub mod hand;
 pub mod missed;
 pub mod nominal_latency;
+pub mod nonlinear_encoder;
 pub mod sampled_actuator;
 
 // Numbers and words.

@@ -48,7 +48,6 @@ pub(crate) use error::unbuildable;
 pub use experiment::{Experiment, HostSignal, Integration};
 pub use nonlinear_loop::Machine;
 pub use reading::Reading;
-pub(crate) use reading::shown;
 pub use trajectory::{Columns, Trajectory};
 
 use closed_loop::ClosedLoop;

@@ -4,6 +4,7 @@ use haptic_servo::scene::EncoderReading;
 use haptic_servo::torque::LimitReason;
 
 use crate::missed::{Missed, Ticks};
+use crate::nonlinear_encoder::shown;
 
 /// An encoder.
 #[derive(Clone, Debug)]
@@ -76,11 +77,6 @@ impl Reading {
         self.held = Some(held);
         held
     }
-}
-
-/// The angle in rad that an encoder of this linearity shows, with the steepest error of one period in a turn.
-pub(crate) fn shown(angle: f64, linearity: f64) -> f64 {
-    if linearity == 0.0 { angle } else { angle + linearity * angle.sin() }
 }
 
 #[cfg(test)]
