@@ -392,11 +392,10 @@ fn slow_turns_measure_a_gimbal_motor() {
     holds("cogging", cogging.amplitude, 0.005);
     for (sample, torque) in found.map.iter().enumerate() {
         let truth = file.disturbance.cogging.at(TAU * sample as f64 / found.map.len() as f64);
-        // The interval is one of the root mean square.
-        let most = 1.5 * found.uncertainty;
+        // The interval has room for the harmonics that the record does not show, and there are none.
+        let most = found.uncertainty.min(7.5e-4);
         assert!((torque - truth).abs() < most, "{sample}: {torque} {truth} {}", found.uncertainty);
     }
-    assert!(found.uncertainty < 5e-4, "{}", found.uncertainty);
 }
 
 /// The program `identify` for a device with a chip plays its sweep, and ends it at a reading that fails.
