@@ -318,7 +318,8 @@ impl Search {
         damper: Option<Damper>,
     ) -> Option<Scene> {
         let Structure { coupling, is_latched } = structure;
-        let mut scene = at_period(&self.scene, self.chip, period);
+        // The age follows from the updates, too, which are set below.
+        let mut scene = at_period(&self.scene, None, period);
         let Environment::Parts(parts) = &mut scene.environment else { return None };
         let delay = usize::from(is_latched);
         parts.wall.as_mut()?.damper = damper;

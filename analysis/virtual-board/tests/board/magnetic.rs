@@ -396,6 +396,7 @@ fn slow_turns_measure_a_gimbal_motor() {
         let most = found.uncertainty.min(7.5e-4);
         assert!((torque - truth).abs() < most, "{sample}: {torque} {truth} {}", found.uncertainty);
     }
+    assert!(found.tells_cogging(), "{}", found.uncertainty);
 }
 
 /// The program `identify` for a device with a chip plays its sweep, and ends it at a reading that fails.
