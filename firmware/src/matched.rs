@@ -45,8 +45,12 @@ pub struct MatchedCoupling {
     pub held: f64,
     /// Compliance for the torque before these.
     pub arriving: f64,
-    /// The trails of the lags; with a gain of 0 where there is none.
+    /// The trails of the lags; with a gain of 0 where there is none. Those of two lags have opposite signs: their
+    /// sum is a compliance.
     pub trails: [Trail; TRAILS],
+    /// The [error](Self::error) of the compliances of earlier torques in rad/(N m): as each counts at least three
+    /// times, more than twice the sum of their magnitudes.
+    rounding: f64,
     /// Upper bound on the environment's index in N m s/rad.
     pub limit: Interval,
 }
@@ -90,12 +94,14 @@ impl MatchedCoupling {
             held: format.coefficient(held.midpoint(), Rounding::Nearest),
             arriving: format.coefficient(arriving.midpoint(), Rounding::Nearest),
             trails: [Trail { gain: 0.0, decay: 0.0 }; TRAILS],
+            rounding: 0.0,
             limit: Interval::ENTIRE,
         };
         each!(i in 0..TRAILS => {
             run.trails[i] = rounded(standard, window.trails[i], format);
         });
-        let error = run.rounding(standard, &window);
+        let error = run.error(standard, &window);
+        run.rounding = error.hi();
         let first = standard.mul(window.tap(0));
         // Above the formula even without an error, by a last bit. With twice the error the loss is least.
         let least = first.add(error.double()).hi().next_up();
@@ -137,23 +143,24 @@ impl MatchedCoupling {
     }
 
     /// Sum of the magnitudes of all compliances in rad/(N m): the largest deflection for torques of up to 1 N m
-    /// each, which is that of a torque that stays.
+    /// each. As those of the formula are not negative, it is the deflection of a torque that stays, which is its
+    /// lower end, and at most twice the rounding errors more.
     pub const fn compliance_at_rest(&self) -> Interval {
         let held = Interval::exact(self.held).mul(Interval::exact(self.whole as f64));
         let mut sum = Interval::exact(self.compliance).add(held);
-        sum = sum.add(Interval::exact(self.arriving).abs());
+        sum = sum.add(Interval::exact(self.arriving));
         each!(i in 0..TRAILS => {
             let Trail { gain, decay } = self.trails[i];
             let lasts = Interval::ONE.sub(Interval::exact(decay));
-            sum = sum.add(Interval::exact(gain).abs().div(lasts));
+            sum = sum.add(Interval::exact(gain).div(lasts));
         });
-        sum
+        sum.add(Interval::new(0.0, self.rounding))
     }
 
     /// Sum over the taps of `(2 m + 1)` times the rounding error, except the first. Where the window is around
     /// two samples or more, the tap at that sample differs from the others that are held, and this difference
     /// counts as such an error.
-    const fn rounding(&self, standard: Interval, window: &ResponseWindow) -> Interval {
+    const fn error(&self, standard: Interval, window: &ResponseWindow) -> Interval {
         let mut sum = Interval::ZERO;
         each!(m in 1..=self.whole + 1 => {
             let run = if m > self.whole { self.arriving } else { self.held };

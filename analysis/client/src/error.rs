@@ -36,6 +36,23 @@ pub enum LinkError {
     Lost { address: Address, source: io::Error },
 }
 
+impl LinkError {
+    /// The same, where the board has not answered yet: a socket that it closes is in use. A serial line would be
+    /// silent.
+    pub fn before_an_answer(self) -> Self {
+        use io::ErrorKind::{BrokenPipe, ConnectionReset, UnexpectedEof};
+        match self {
+            Self::Lost { address, source }
+                if matches!(source.kind(), BrokenPipe | ConnectionReset | UnexpectedEof)
+                    && !matches!(address, Address::Serial { .. }) =>
+            {
+                Self::InUse { address }
+            }
+            other => other,
+        }
+    }
+}
+
 /// The other programs that have a serial port open; empty for a socket.
 fn holders_of(address: &Address) -> String {
     match address {

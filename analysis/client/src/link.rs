@@ -43,13 +43,7 @@ impl Link {
             match wire.next(Instant::now() + QUERY.again) {
                 Ok(Some(Event::Connected(board))) => return Ok(Self { wire, board }),
                 Ok(_) => {}
-                // A socket reports it; a serial line is silent.
-                Err(LinkError::Lost { address, source })
-                    if is_closed(&source) && !matches!(address, Address::Serial { .. }) =>
-                {
-                    return Err(LinkError::InUse { address });
-                }
-                Err(error) => return Err(error),
+                Err(error) => return Err(error.before_an_answer()),
             }
         }
     }
@@ -309,10 +303,4 @@ impl Wire {
     pub fn unanswered(&self, what: &'static str, after: Duration) -> LinkError {
         LinkError::Unanswered { address: self.address.clone(), what, after }
     }
-}
-
-/// Whether the other end has closed the connection.
-fn is_closed(error: &io::Error) -> bool {
-    use io::ErrorKind::{BrokenPipe, ConnectionReset, UnexpectedEof};
-    matches!(error.kind(), BrokenPipe | ConnectionReset | UnexpectedEof)
 }

@@ -28,7 +28,7 @@ pub fn compliance(scene: &Scene) -> Option<f64> {
                 &scene.latency,
                 Format::F64,
             )?;
-            (matched.compliance_at_rest().midpoint(), matched.compliance)
+            (matched.compliance_at_rest().lo(), matched.compliance)
         }
     };
     // An undelayed torque profile is stated in front of the coupling, for the torque of the same tick (theory,

@@ -47,7 +47,7 @@ pub struct Arguments {
     pub device: Option<String>,
     /// End after this number of seconds
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds,
-          allow_negative_numbers = true)]
+          allow_hyphen_values = true)]
     pub duration: Option<Duration>,
 }
 

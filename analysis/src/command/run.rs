@@ -100,11 +100,11 @@ pub struct Arguments {
     pub replay: Option<PathBuf>,
     /// Encoder counts per turn; default: those of the scene
     #[arg(long, value_name = "N", value_parser = positive,
-          allow_negative_numbers = true)]
+          allow_hyphen_values = true)]
     pub counts_per_rev: Option<f64>,
     /// Motor torque in N m at the largest code of the DAC; default: that of the scene
     #[arg(long, value_name = "TORQUE", value_parser = positive,
-          allow_negative_numbers = true)]
+          allow_hyphen_values = true)]
     pub full_scale: Option<f64>,
     /// Number format of the servo
     #[arg(long, value_enum, default_value_t = NumberFormat::F32)]

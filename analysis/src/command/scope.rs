@@ -31,10 +31,10 @@ pub struct Arguments {
     pub csv: Option<PathBuf>,
     /// End after this number of seconds
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds,
-          allow_negative_numbers = true)]
+          allow_hyphen_values = true)]
     pub duration: Option<Duration>,
     /// Receive only every Nth tick; default: as many as the terminal shows
-    #[arg(long, value_name = "TICKS", value_parser = ticks, allow_negative_numbers = true)]
+    #[arg(long, value_name = "TICKS", value_parser = ticks, allow_hyphen_values = true)]
     pub every: Option<NonZeroU32>,
     /// Width of the view in seconds
     #[arg(long, value_name = "SECONDS", default_value = "5", value_parser = seconds)]

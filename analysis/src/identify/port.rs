@@ -163,12 +163,19 @@ impl SweepPort {
             open(address).map_err(|source| LinkError::Open { address: address.clone(), source })?;
         let (address, rest, description) = (address.clone(), Vec::new(), Description::default());
         let mut player = Self { address, transport, rest, told: Instant::now(), description };
-        player.send(&SweepRequest::Stop)?;
+        match player.begin() {
+            Ok(()) => Ok(player),
+            Err(PortError::Link(error)) => Err(error.before_an_answer().into()),
+            Err(error) => Err(error),
+        }
+    }
+
+    fn begin(&mut self) -> Result<(), PortError> {
+        self.send(&SweepRequest::Stop)?;
         let settled = Instant::now() + SETTLE;
-        while player.line(settled)?.is_some() {}
-        player.rest.clear();
-        player.ask()?;
-        Ok(player)
+        while self.line(settled)?.is_some() {}
+        self.rest.clear();
+        self.ask()
     }
 
     pub fn description(&self) -> &Description {
@@ -326,6 +333,16 @@ mod tests {
         bytes.extend(b"a line\r\nrest");
         assert_eq!(first_line(&mut bytes).as_deref(), Some("a line"));
         assert_eq!((first_line(&mut bytes), bytes.as_slice()), (None, &b"rest"[..]));
+    }
+
+    #[test]
+    fn a_board_that_another_program_has_is_in_use() {
+        let held = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
+        let address = Address::Tcp(held.local_addr().expect("a port").to_string());
+        std::thread::spawn(move || held.incoming().for_each(drop));
+        let error = SweepPort::open(&address).err();
+        let in_use = matches!(error, Some(PortError::Link(LinkError::InUse { .. })));
+        assert!(in_use, "{error:?}");
     }
 
     #[test]

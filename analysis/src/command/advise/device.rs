@@ -31,7 +31,7 @@ pub struct Arguments {
     #[arg(value_name = "FILE")]
     pub file: String,
     /// Updates of the torque in a second, for a device file
-    #[arg(long, value_name = "HZ", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "HZ", value_parser = positive, allow_hyphen_values = true)]
     pub rate: Option<f64>,
     /// Write the stiffness over the rate into this chart (.svg), or its numbers (.csv)
     #[arg(long, short, value_name = "FILE")]

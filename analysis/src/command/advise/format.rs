@@ -24,30 +24,30 @@ use crate::studies::tradeoff::{self, Tradeoff, ticks};
 #[derive(Debug, Args)]
 pub struct FormatArguments {
     /// Largest torque of a limit cycle at rest in N m, peak to peak
-    #[arg(long = "max-limit-cycle", alias = "hum", value_name = "TORQUE", value_parser = positive, allow_negative_numbers = true,
+    #[arg(long = "max-limit-cycle", alias = "hum", value_name = "TORQUE", value_parser = positive, allow_hyphen_values = true,
           required = false, required_unless_present = "model")]
     pub hum: f64,
     /// Sample rate in Hz
-    #[arg(long, value_name = "HZ", value_parser = rate, allow_negative_numbers = true,
+    #[arg(long, value_name = "HZ", value_parser = rate, allow_hyphen_values = true,
           required = false, required_unless_present = "model")]
     pub rate: f64,
     /// Largest error in N m of the torque, compared with f64; default: no limit
-    #[arg(long, value_name = "TORQUE", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "TORQUE", value_parser = positive, allow_hyphen_values = true)]
     pub error: Option<f64>,
     /// Largest share of a 170 MHz core for a tick from count to code; the rest of the interrupt is
     /// the same in every format
     #[arg(long = "cpu-share", alias = "share", value_name = "PART", value_parser = part,
-          default_value_t = 0.5, allow_negative_numbers = true)]
+          default_value_t = 0.5, allow_hyphen_values = true)]
     pub share: f64,
     /// Encoder counts per turn; default: those of the scene
-    #[arg(long, value_name = "N", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = positive, allow_hyphen_values = true)]
     pub counts_per_rev: Option<f64>,
     /// Coulomb friction of the device in N m; default: that of the scene
-    #[arg(long, value_name = "TORQUE", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "TORQUE", value_parser = positive, allow_hyphen_values = true)]
     pub friction: Option<f64>,
     /// Largest angle in rad that a fixed-point format has to represent, to each side of zero
     #[arg(long = "max-angle", alias = "range", value_name = "ANGLE", value_parser = positive,
-          default_value_t = HALF_A_TURN, allow_negative_numbers = true)]
+          default_value_t = HALF_A_TURN, allow_hyphen_values = true)]
     pub range: f64,
     /// Count the instructions of this scene on the emulated board, instead of using the kept table
     #[arg(long)]

@@ -19,7 +19,7 @@ pub struct ModelArguments {
     pub model: bool,
     /// Largest relative error of delta, critical stiffness, angle and torque
     #[arg(long, value_name = "SHARE", default_value_t = 0.01, value_parser = share,
-          allow_negative_numbers = true, requires = "model")]
+          allow_hyphen_values = true, requires = "model")]
     pub bound: f64,
 }
 

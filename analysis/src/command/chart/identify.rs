@@ -16,7 +16,7 @@ pub struct Arguments {
     #[arg(value_name = "FILE.csv")]
     pub file: PathBuf,
     /// Encoder counts per turn
-    #[arg(long, value_name = "N", value_parser = positive)]
+    #[arg(long, value_name = "N", value_parser = positive, allow_hyphen_values = true)]
     pub counts_per_rev: f64,
     #[command(flatten)]
     pub reading: Reading,

@@ -26,7 +26,7 @@ pub struct Arguments {
     pub question: DesignGoal,
     /// Fraction of the device's passivity to use, above 0 and up to 1
     #[arg(long, global = true, value_name = "PART", default_value_t = 1.0, value_parser = part,
-          allow_negative_numbers = true)]
+          allow_hyphen_values = true)]
     pub safety: f64,
     /// Keep the coupling of the scene instead of the standard coupling, 2 delta / T.
     /// `design device` always takes the standard coupling. Where torques lag, and where the coupling is

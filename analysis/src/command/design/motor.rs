@@ -19,40 +19,43 @@ use crate::toolchain::BoardModel;
 
 /// Arguments of `haptic design motor`.
 #[derive(Debug, Args)]
-#[command(allow_negative_numbers = true)]
 pub struct Arguments {
     /// Scene file: of its numbers, those of the options that are left out
     pub file: Option<String>,
     /// Voltage in V of the supply, under load; from a file: `motor.lowest_supply` or `supply.voltage`
-    #[arg(long, value_name = "V", value_parser = positive, required_unless_present = "file")]
+    #[arg(long, value_name = "V", value_parser = positive, allow_hyphen_values = true,
+          required_unless_present = "file")]
     pub supply: Option<f64>,
     /// Resistance in ohm: between the terminals of a brushed motor, of one phase of a brushless one; from a file: `motor.resistance`
-    #[arg(long, value_name = "OHM", value_parser = positive, required_unless_present = "file")]
+    #[arg(long, value_name = "OHM", value_parser = positive, allow_hyphen_values = true,
+          required_unless_present = "file")]
     pub resistance: Option<f64>,
     /// Inductance in H, of the same; from a file: `motor.inductance`
-    #[arg(long, value_name = "H", value_parser = positive, required_unless_present = "file")]
+    #[arg(long, value_name = "H", value_parser = positive, allow_hyphen_values = true,
+          required_unless_present = "file")]
     pub inductance: Option<f64>,
     /// Torque at the handle in N m/A; of a brushless motor per ampere of a phase current's amplitude; from a file: `motor.torque_constant`
-    #[arg(long, value_name = "N m/A", value_parser = positive, required_unless_present = "file")]
+    #[arg(long, value_name = "N m/A", value_parser = positive, allow_hyphen_values = true,
+          required_unless_present = "file")]
     pub torque_constant: Option<f64>,
     /// Electrical turns in a turn of the handle, of a brushless motor; from a file: `motor.pole_pairs`
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub pole_pairs: Option<u16>,
     /// Bandwidth in Hz of the current loop; from a file: by `device.actuator_lag`; otherwise 1000
-    #[arg(long, value_name = "HZ", value_parser = positive)]
+    #[arg(long, value_name = "HZ", value_parser = positive, allow_hyphen_values = true)]
     pub bandwidth: Option<f64>,
     /// Full-scale torque in N m; from a file: `limits.full_scale`; otherwise that of the current that the
     /// board bears for ever
-    #[arg(long, value_name = "N m", value_parser = positive)]
+    #[arg(long, value_name = "N m", value_parser = positive, allow_hyphen_values = true)]
     pub torque: Option<f64>,
     /// Largest speed in rad/s; from a file: `supply.largest_speed`; otherwise 25
-    #[arg(long, value_name = "RAD/S", value_parser = positive)]
+    #[arg(long, value_name = "RAD/S", value_parser = positive, allow_hyphen_values = true)]
     pub speed: Option<f64>,
     /// Period in s of the servo; from a file: `servo.period`; otherwise 0.001
-    #[arg(long, value_name = "S", value_parser = positive)]
+    #[arg(long, value_name = "S", value_parser = positive, allow_hyphen_values = true)]
     pub period: Option<f64>,
     /// Encoder counts in a turn of the handle; from a file: by `limits.encoder_step`; otherwise 4096
-    #[arg(long, value_name = "N", value_parser = positive)]
+    #[arg(long, value_name = "N", value_parser = positive, allow_hyphen_values = true)]
     pub counts_per_turn: Option<f64>,
     /// The board, with a bridge
     #[arg(long, value_parser = BoardModel::find, default_value = "b-g431b-esc1")]

@@ -22,6 +22,19 @@ pub fn replaced(path: &Path, table: &str, counts_per_turn: f64) -> Result<String
     })
 }
 
+/// Checks that a file can take a measured device, or numbers of it, before a motor moves for minutes.
+///
+/// # Errors
+/// As for [`replaced`], or for [`with_numbers`].
+pub fn check(path: &Path, takes_numbers: bool, counts_per_turn: f64) -> Result<(), CommandError> {
+    match takes_numbers {
+        true => checked(path, counts_per_turn).map(drop),
+        false => {
+            replaced(path, "[device]\ninertia = 1.0\ndamping = 1.0\n", counts_per_turn).map(drop)
+        }
+    }
+}
+
 /// A number of a device's file.
 pub struct Number {
     /// Its table.

@@ -42,7 +42,7 @@ pub struct Arguments {
     pub file: Option<PathBuf>,
     /// Encoder counts per turn; without a default for a record, with --target: those of FILE or 61440, with --port:
     /// those of the board
-    #[arg(long, value_name = "N", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = positive, allow_hyphen_values = true)]
     pub counts_per_rev: Option<f64>,
     /// Measure with the board at this address, which runs the program `identify` (`haptic flash identify --device FILE`): /dev/ttyACM0
     /// (@BAUD), tcp://HOST:PORT, unix:PATH. The motor moves the device; nobody may hold it
@@ -59,7 +59,7 @@ pub struct Arguments {
     /// shows the nonlinearity and the age of the first: counts of the second per turn
     #[arg(long, value_name = "N", value_parser = positive, conflicts_with_all = ["turns", "measured", "settle", "longest_lag", "torque_delay", "count_delay",
           "torque_noise", "skew", "output_delay", "seed"],
-          requires = "file", allow_negative_numbers = true)]
+          requires = "file", allow_hyphen_values = true)]
     pub reference_per_rev: Option<f64>,
     #[command(flatten)]
     pub reading: Reading,
@@ -78,19 +78,19 @@ pub struct Arguments {
 #[derive(Debug, Args)]
 pub struct Reading {
     /// Time from the time stamp of a row until its torque is applied, in s, at most 0.1
-    #[arg(long, value_name = "S", value_parser = delay, allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", value_parser = delay, allow_hyphen_values = true)]
     pub torque_delay: Option<f64>,
     /// Age of the counts of a row at its time stamp, in s, at most 0.1
     #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = delay,
-          allow_negative_numbers = true)]
+          allow_hyphen_values = true)]
     pub count_delay: f64,
     /// Fraction of each sine to skip while the device settles, 0 to 0.9; default: 0.25, with
     /// --target: 0, because the record starts after the settling
-    #[arg(long, value_name = "PART", value_parser = part, allow_negative_numbers = true)]
+    #[arg(long, value_name = "PART", value_parser = part, allow_hyphen_values = true)]
     pub settle: Option<f64>,
     /// Longest time constant that the amplifier may have, in s, as its bandwidth in the data sheet says:
     /// 1/(2 pi f). The shorter, the narrower are the intervals of lag and delay; default: half a period
-    #[arg(long, value_name = "S", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", value_parser = positive, allow_hyphen_values = true)]
     pub longest_lag: Option<f64>,
     /// The current loop of the board's own bridge that the record is from, as eight numbers with commas between,
     /// which the measurement with --port has printed; default with --port: those of the board
@@ -259,6 +259,12 @@ impl Arguments {
     fn simulated(&self) -> Option<&Path> {
         self.file.as_deref().filter(|_| self.target.target.is_some())
     }
+
+    /// Checks that a file that exists can take the device with an encoder of these counts.
+    fn check_output(&self, counts_per_turn: f64) -> Result<(), CommandError> {
+        let output = self.output.as_deref().filter(|path| path.exists());
+        output.map_or(Ok(()), |path| device_file::check(path, self.turns, counts_per_turn))
+    }
 }
 
 /// The largest nonlinearity of the encoder in the files that say something of it: a simulated device's, and that of
@@ -287,7 +293,9 @@ struct Measured {
 fn measured(arguments: &Arguments, recorder: &mut Recorder<'_>) -> Result<Measured, CommandError> {
     let (file, stated) = (arguments.file.as_deref(), arguments.counts_per_rev);
     if let Some(address) = &arguments.port {
-        let (record, board) = port::measure(address, recorder, arguments.turns)?;
+        let (record, board) = port::measure(address, recorder, arguments.turns, |board| {
+            arguments.check_output(stated.unwrap_or(board.counts_per_turn))
+        })?;
         let is_paddle =
             board.counts_per_turn == TRANSDUCERS.counts_per_turn && board.source.is_none();
         return Ok(Measured {
@@ -308,6 +316,7 @@ fn measured(arguments: &Arguments, recorder: &mut Recorder<'_>) -> Result<Measur
             full_scale_torque: of_file.full_scale.unwrap_or(TRANSDUCERS.full_scale_torque),
             ..TRANSDUCERS
         };
+        arguments.check_output(transducers.counts_per_turn)?;
         let simulated = &arguments.target;
         let (measured, origin) = match arguments.turns {
             true => {
@@ -561,15 +570,20 @@ fn device_table(found: &Identification, delays: &KnownDelays) -> String {
         linearity if linearity > 0.0 => format!(", times {}{less}", 1.0 - linearity),
         _ => less,
     };
-    let passivity = match found.passivity() {
-        Some(passivity) => format!(
-            "passivity = {} # N m s/rad, the damping less twice its uncertainty{less}; valid if the device is rigid \
-             from motor to hand\n",
-            // Rounded down.
-            significant(passivity * (1.0 - 5e-4), 4),
+    // Rounded down.
+    let passivity = found.passivity().map(|passivity| significant(passivity * (1.0 - 5e-4), 4));
+    let passivity = match (passivity, found.latency) {
+        (Some(passivity), Ok(_)) => format!(
+            "passivity = {passivity} # N m s/rad, the damping less twice its uncertainty{less}; valid if the device is \
+             rigid from motor to hand\n",
+        ),
+        // Else a scene would certify as if each torque were there at once.
+        (Some(passivity), Err(_)) => format!(
+            "passivity = 0.0 # nothing certifies without lag and delay: {passivity} N m s/rad once `actuator_lag` here \
+             and `output_delay` of the scene are stated\n"
         ),
         // Else a scene would certify with all of the damping.
-        None => "passivity = 0.0 # none: nothing certifies with this device\n".to_owned(),
+        (None, _) => "passivity = 0.0 # none: nothing certifies with this device\n".to_owned(),
     };
     let latency = latency_lines(found, delays);
     let at_least = 0.5 * found.friction.lo;

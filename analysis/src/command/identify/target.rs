@@ -43,17 +43,17 @@ pub struct Simulated {
     pub target: Option<Target>,
     /// Standard deviation of the torque noise in N m, new in every tick and not recorded; default: 0.0025 of the
     /// motor's full scale
-    #[arg(long, value_name = "TORQUE", value_parser = not_negative, allow_negative_numbers = true,
+    #[arg(long, value_name = "TORQUE", value_parser = not_negative, allow_hyphen_values = true,
           requires = "target")]
     pub torque_noise: Option<f64>,
     /// Time by which the simulated counts are late besides the age of the file's encoder, in s; less than a period
     #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = skew,
-          allow_negative_numbers = true, requires = "target")]
+          allow_hyphen_values = true, requires = "target")]
     pub skew: f64,
     /// Time by which the simulated torques are later than their codes, in s; the file's
     /// `device.actuator_lag` is the simulated amplifier's lag
     #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = output_delay,
-          allow_negative_numbers = true, requires = "target")]
+          allow_hyphen_values = true, requires = "target")]
     pub output_delay: f64,
     /// Seed of the noise
     #[arg(long, value_name = "N", default_value_t = 1, requires = "target")]

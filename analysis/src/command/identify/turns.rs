@@ -1,5 +1,7 @@
 //! `haptic identify --turns`: friction and cogging from slow whole turns in both directions.
 
+use std::path::Path;
+
 use serde::Serialize;
 
 use super::device_file::{Number, with_numbers};
@@ -55,9 +57,21 @@ struct Stated {
     linearity: f64,
     /// In N m.
     friction: f64,
+    /// Whether it has a map of the cogging.
+    has_map: bool,
 }
 
 impl Stated {
+    fn of(path: &Path) -> Result<Self, CommandError> {
+        let path = path.to_string_lossy();
+        let file = file::load_device(&path)?;
+        Ok(Self {
+            linearity: file.reading.linearity,
+            friction: file.disturbance.friction,
+            has_map: file::load_json(&path)?.get("anticogging").is_some(),
+        })
+    }
+
     /// Whether its friction is more than the measured one.
     fn has_more_friction(&self, found: &SlowTurns) -> bool {
         self.friction > found.least_friction.hi
@@ -69,13 +83,7 @@ pub fn run(arguments: &Arguments, measured: &Measured) -> Result<CommandStatus, 
     let Measured { record, origin, counts_per_turn, .. } = measured;
     let correction = arguments.reading.correction(*counts_per_turn, 0.0);
     let found = identify::slow_turns(record, &correction)?;
-    let written =
-        arguments.output.as_deref().map(|path| file::load_device(&path.to_string_lossy()));
-    let stated = written.transpose()?.map(|file| Stated {
-        linearity: file.reading.linearity,
-        friction: file.disturbance.friction,
-    });
-    let stated = stated.unwrap_or_default();
+    let stated = arguments.output.as_deref().map(Stated::of).transpose()?.unwrap_or_default();
     let numbers = numbers(&found, &stated);
     if let Some(path) = &arguments.output {
         write(path, &with_numbers(path, &numbers, *counts_per_turn)?)?;
@@ -195,6 +203,12 @@ fn text(found: &SlowTurns, stated: &Stated, origin: Option<&Origin>, numbers: &[
         ("map", map(found)),
     ];
     rows.extend(remains(found));
+    let keeps_map = stated.has_map && !found.tells_cogging();
+    rows.extend(keeps_map.then(|| {
+        let text = "the file keeps its `[anticogging]`, of which this record shows nothing: remove it if it is of \
+                    another motor or encoder";
+        ("note", text.to_owned())
+    }));
     rows.push(("not resolved", not_resolved(&found.floors, "N m")));
     rows.extend(origin.map(Origin::row));
     let rows: String = rows.iter().map(|(label, value)| format!("{label:<12} {value}\n")).collect();

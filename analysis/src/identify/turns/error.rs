@@ -21,8 +21,8 @@ pub enum TurnsError {
     NotWhole { farthest: f64, rows: usize },
     #[error(
         "there is no whole turn without a stop: the device stops {stops} times and goes on in the same direction \
-         (first at {} s, row {row}), and the longest motion without a stop is {} turns. It sticks and slips: turn \
-         faster, with more torque than friction and cogging together",
+         (first at {} s, row {row}), and the longest motion without a stop is {} turns. It sticks and slips, or \
+         its damping takes the torque: turn with more torque than friction, cogging and damping together",
         significant(*.time, 6),
         significant(.farthest / TAU, 3)
     )]
