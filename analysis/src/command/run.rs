@@ -20,7 +20,7 @@ use super::file_scene::{hand_trajectory, scene_file};
 use super::outcome::{section, text};
 use super::shared_arguments::{DEFAULT_TICKS, JsonOption, MAX_TICKS, json};
 use super::status::{CommandError, CommandStatus};
-use super::value_parsers::positive;
+use super::value_parsers::{counts, positive};
 use super::virtual_board_build::VirtualBoardBuild;
 use crate::bridge_run::{ShaftInput, run_on_bridge};
 use crate::chart::budget::BudgetRuns;
@@ -99,7 +99,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE.csv")]
     pub replay: Option<PathBuf>,
     /// Encoder counts per turn; default: those of the scene
-    #[arg(long, value_name = "N", value_parser = positive,
+    #[arg(long, value_name = "N", value_parser = counts,
           allow_hyphen_values = true)]
     pub counts_per_rev: Option<f64>,
     /// Motor torque in N m at the largest code of the DAC; default: that of the scene

@@ -14,6 +14,12 @@ pub fn positive(text: &str) -> Result<f64, String> {
     bounded(text, "a number greater than 0", |value| value > 0.0)
 }
 
+/// Counts of an encoder in a turn: as many as a counter has.
+pub fn counts(text: &str) -> Result<f64, String> {
+    let bound = format!("a number from 1 to {}", u32::MAX);
+    bounded(text, &bound, |value| (1.0..=f64::from(u32::MAX)).contains(&value))
+}
+
 pub fn not_negative(text: &str) -> Result<f64, String> {
     bounded(text, "a number, 0 or more", |value| value >= 0.0)
 }

@@ -12,7 +12,7 @@ use super::report::{FormatReport, message, text};
 use crate::command::file_scene::{hand_trajectory, scene_file};
 use crate::command::shared_arguments::JsonOption;
 use crate::command::status::{CommandError, CommandStatus};
-use crate::command::value_parsers::positive;
+use crate::command::value_parsers::{counts, positive};
 use crate::limits::at_period;
 use crate::program::Program;
 use crate::studies::number_format::{
@@ -40,7 +40,7 @@ pub struct FormatArguments {
           default_value_t = 0.5, allow_hyphen_values = true)]
     pub share: f64,
     /// Encoder counts per turn; default: those of the scene
-    #[arg(long, value_name = "N", value_parser = positive, allow_hyphen_values = true)]
+    #[arg(long, value_name = "N", value_parser = counts, allow_hyphen_values = true)]
     pub counts_per_rev: Option<f64>,
     /// Coulomb friction of the device in N m; default: that of the scene
     #[arg(long, value_name = "TORQUE", value_parser = positive, allow_hyphen_values = true)]

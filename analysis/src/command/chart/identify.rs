@@ -8,7 +8,7 @@ use super::output::OutputArguments;
 use crate::chart::{self, Chart, Data};
 use crate::command::identify::{Reading, of_file};
 use crate::command::status::CommandError;
-use crate::command::value_parsers::positive;
+use crate::command::value_parsers::counts;
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -16,7 +16,7 @@ pub struct Arguments {
     #[arg(value_name = "FILE.csv")]
     pub file: PathBuf,
     /// Encoder counts per turn
-    #[arg(long, value_name = "N", value_parser = positive, allow_hyphen_values = true)]
+    #[arg(long, value_name = "N", value_parser = counts, allow_hyphen_values = true)]
     pub counts_per_rev: f64,
     #[command(flatten)]
     pub reading: Reading,

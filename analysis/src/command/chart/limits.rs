@@ -11,7 +11,7 @@ use crate::chart::limits::{DelayCurve, Own};
 use crate::chart::{self, Chart, ChartError, Data};
 use crate::command::shared_arguments::SceneArgument;
 use crate::command::status::CommandError;
-use crate::command::value_parsers::{number, positive_range};
+use crate::command::value_parsers::{counts, number, positive_range};
 use crate::limits::{Curves, Limit, Point, at_period, largest_stiffness, with_wall};
 use crate::progress;
 use crate::quantity::{shortened, significant};
@@ -30,7 +30,7 @@ pub struct Arguments {
     pub y: Option<Range<f64>>,
     /// Encoder counts per turn; default: from `encoder_step` in the scene's table `limits`, or
     /// 65536
-    #[arg(long, value_name = "N", value_parser = counts)]
+    #[arg(long, value_name = "N", value_parser = counts, allow_hyphen_values = true)]
     pub counts_per_rev: Option<f64>,
     /// Fraction of the largest stiffness at which the ripple is computed: at 1 it has no bound
     #[arg(long, value_name = "PART", value_parser = part, default_value = "0.7")]
@@ -99,11 +99,6 @@ pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
 fn whole(counts: f64) -> f64 {
     let nearest = counts.round();
     if (counts - nearest).abs() <= 1e-5 * nearest { nearest } else { counts }
-}
-
-fn counts(text: &str) -> Result<f64, String> {
-    let counts = number(text)?;
-    if counts >= 1.0 { Ok(counts) } else { Err(format!("{counts} must be at least 1")) }
 }
 
 fn part(text: &str) -> Result<f64, String> {

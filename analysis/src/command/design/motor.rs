@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use crate::command::shared_arguments::{JsonOption, warned};
 use crate::command::status::{CommandError, CommandStatus};
-use crate::command::value_parsers::positive;
+use crate::command::value_parsers::{counts, positive};
 use crate::file::supply::FileSupply;
 use crate::file::{self, SceneFile};
 use crate::quantity::significant;
@@ -55,7 +55,7 @@ pub struct Arguments {
     #[arg(long, value_name = "S", value_parser = positive, allow_hyphen_values = true)]
     pub period: Option<f64>,
     /// Encoder counts in a turn of the handle; from a file: by `limits.encoder_step`; otherwise 4096
-    #[arg(long, value_name = "N", value_parser = positive, allow_hyphen_values = true)]
+    #[arg(long, value_name = "N", value_parser = counts, allow_hyphen_values = true)]
     pub counts_per_turn: Option<f64>,
     /// The board, with a bridge
     #[arg(long, value_parser = BoardModel::find, default_value = "b-g431b-esc1")]

@@ -19,7 +19,7 @@ use serde::Serialize;
 use super::output_file::{FileArgument, check_writable, refuse_overwriting};
 use super::shared_arguments::{JsonOption, write};
 use super::status::{CommandError, CommandStatus};
-use super::value_parsers::{bounded, positive};
+use super::value_parsers::{bounded, counts, positive};
 use crate::file::{self, StatedTransducers, key};
 use crate::identify::record::Recorder;
 use crate::identify::{
@@ -42,7 +42,7 @@ pub struct Arguments {
     pub file: Option<PathBuf>,
     /// Encoder counts per turn; without a default for a record, with --target: those of FILE or 61440, with --port:
     /// those of the board
-    #[arg(long, value_name = "N", value_parser = positive, allow_hyphen_values = true)]
+    #[arg(long, value_name = "N", value_parser = counts, allow_hyphen_values = true)]
     pub counts_per_rev: Option<f64>,
     /// Measure with the board at this address, which runs the program `identify` (`haptic flash identify --device FILE`): /dev/ttyACM0
     /// (@BAUD), tcp://HOST:PORT, unix:PATH. The motor moves the device; nobody may hold it
@@ -57,7 +57,7 @@ pub struct Arguments {
     pub turns: bool,
     /// The record is of whole turns with two encoders on the shaft, in the columns `counts` and `reference`, and
     /// shows the nonlinearity and the age of the first: counts of the second per turn
-    #[arg(long, value_name = "N", value_parser = positive, conflicts_with_all = ["turns", "measured", "settle", "longest_lag", "torque_delay", "count_delay",
+    #[arg(long, value_name = "N", value_parser = counts, conflicts_with_all = ["turns", "measured", "settle", "longest_lag", "torque_delay", "count_delay",
           "torque_noise", "skew", "output_delay", "seed"],
           requires = "file", allow_hyphen_values = true)]
     pub reference_per_rev: Option<f64>,
