@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use std::io;
 use std::path::Path;
 
+use haptic_servo::magnetic::Chip;
 use haptic_servo::scene::TimeRange;
 use serde::Serialize;
 
@@ -52,7 +53,7 @@ pub fn run(
     let found = identify::linearity(&pair, [counts_per_turn, reference])?;
     let written = arguments.output.as_deref().map(age::chip_and_age);
     let (chip, stated) = written.transpose()?.unwrap_or_default();
-    let numbers = numbers(&found, chip.is_none(), counts_per_turn)?;
+    let numbers = numbers(&found, (chip, stated), counts_per_turn)?;
     if let Some(path) = &arguments.output {
         write(path, &with_numbers(path, &numbers, counts_per_turn)?)?;
     }
@@ -78,7 +79,7 @@ pub fn run(
 /// If some angles are read twice: the slope of the error, which a file bounds by 1, is as large as that of the angle.
 fn numbers(
     found: &Linearity,
-    is_age_free: bool,
+    (chip, stated): (Option<&Chip>, Option<TimeRange>),
     counts_per_turn: f64,
 ) -> Result<Vec<Number>, CommandError> {
     let slope = found.slope.hi * (1.0 + 5e-3);
@@ -97,14 +98,23 @@ fn numbers(
         value: significant(slope, 3),
         comment: "largest slope of the error, at 95 %".into(),
     };
-    let age = found.age.filter(|age| is_age_free && age.hi > 0.0).map(|age| age::number(&age));
-    let hysteresis = Number {
+    // The age of a chip is that of all of its kind. What a file states may have a delay of the torque in it.
+    let age = found.age.filter(|age| chip.is_none() && age.hi > 0.0).map(|age| {
+        let most = stated.map_or(age.hi, |stated| stated.most.max(age.hi));
+        let comment = match most > age.hi {
+            true => "at 95 %, up to the most that the file stated",
+            false => "at 95 %",
+        };
+        age::number(TimeRange::between(age.lo.max(0.0), most), comment)
+    });
+    // At one speed an age looks like it.
+    let hysteresis = found.age.map(|_| Number {
         table: "encoder",
         key: "hysteresis",
         value: significant(found.hysteresis.hi.max(0.0) * counts_per_turn / TAU * (1.0 + 5e-3), 3),
         comment: "counts, at 95 %".into(),
-    };
-    Ok([Some(linearity), Some(hysteresis), age].into_iter().flatten().collect())
+    });
+    Ok([Some(linearity), hysteresis, age].into_iter().flatten().collect())
 }
 
 fn text(
@@ -124,7 +134,11 @@ fn text(
         .map(|harmonic| format!("{}: {}", harmonic.count, of(&harmonic.amplitude)));
     let harmonics: Vec<String> = harmonics.collect();
     let age = match &found.age {
-        None => "not told: the turns have nearly one speed".to_owned(),
+        None => {
+            "not told from hysteresis: the turns have nearly one speed. Record others, too, and no file gets the \
+             hysteresis that this one may be"
+                .to_owned()
+        }
         Some(age) => age::compared(age, stated),
     };
     let rows = [

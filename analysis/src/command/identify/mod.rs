@@ -215,7 +215,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let correction = Correction { source: stated.source.or(torque_source), ..stated };
     let found =
         identify::identify(&record, &correction)?.with_linearity(stated_linearity(arguments));
-    let notes = notes(&found);
+    let mut notes = notes(&found);
     let delays = KnownDelays::of(arguments)?;
     let age = found.latency.ok().and_then(|latency| delays.age(&latency));
     let table = device_table(&found, &delays);
@@ -223,12 +223,19 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         Some(path) => device_file::replaced(path, &table, counts_per_turn)?,
         None => device_file(&table, arguments, counts_per_turn, full_scale)?,
     };
-    if let Some(age) = age.filter(|_| delays.is_age_free()) {
+    if let Some(latency) = found.latency.ok().filter(|_| !has_bridge(&found)) {
         let path = arguments.output.as_deref().unwrap_or(Path::new("the device"));
-        table = device_file::edited(path, &table, &[age::number(&age)])?;
+        let age =
+            age::number(delays.age_in_file(&latency), "at 95 %, with any delay of the torque");
+        table = device_file::edited(path, &table, &[age])?;
     }
-    if let Some(path) = &arguments.output {
-        write(path, &table)?;
+    match &arguments.output {
+        // Its numbers are better than those of a fit that explains nothing.
+        Some(path) if path.exists() && !found.is_rigid() => {
+            notes.push(format!("{} is left as it is, because of the residuals", path.display()));
+        }
+        Some(path) => write(path, &table)?,
+        None => {}
     }
     let taken_out = TakenOut::of(&record, &correction);
     let report = Report { age, ..report(&found, taken_out, &notes, origin.as_ref()) };
@@ -507,26 +514,31 @@ fn split(found: &Identification, latency: &Latency) -> String {
     }
 }
 
-/// The ranges of lag and delay for a scene file: the lag is in the table of the device; the delay belongs in
-/// the table of the servo, which a device file does not have.
+/// Whether the torque was that of a board's own bridge, of which a scene states all times by its current loop.
+fn has_bridge(found: &Identification) -> bool {
+    found.model.source.is_some()
+}
+
+/// The range of the lag for the table of a device, and the sum of lag and delay.
 fn latency_lines(found: &Identification, delays: &KnownDelays) -> String {
     let latency = match &found.latency {
         Ok(latency) => latency,
-        Err(reason) => return format!("# actuator_lag, output_delay: none; {reason}\n"),
+        Err(reason) => return format!("# actuator_lag and encoder.age: none; {reason}\n"),
     };
     // Rounded outwards, so that no end is rounded into the interval.
-    let range = |[lo, hi]: [f64; 2]| {
-        let outward = |value: f64, part: f64| significant(value * (1.0 + part), 4);
-        format!("[{}, {}]", outward(lo, -5e-4), outward(hi, 5e-4))
+    let outward = |value: f64, part: f64| significant(value * (1.0 + part), 4);
+    let [lo, hi] = delays.actuator_lag(latency);
+    let delay = match has_bridge(found) {
+        true => "the delay, which a scene states by its current loop,",
+        false => "`encoder.age`",
     };
-    let sum = &found.mean_delay;
+    let Estimate { lo: least, hi: most, .. } = found.mean_delay;
     format!(
-        "actuator_lag = {} # s, at 95 %\n\n# The scene's servo; lag and delay together are {} to {} s at 95 %:\n\
-         # [servo]\n# output_delay = {} # s, at 95 %\n",
-        range(latency.lag_range()),
-        significant(sum.lo, 4),
-        significant(sum.hi, 4),
-        range(delays.output_delay(latency)),
+        "actuator_lag = [{}, {}] # s, at 95 %; with {delay} {} to {} s at 95 %\n",
+        outward(lo, -5e-4),
+        outward(hi, 5e-4),
+        significant(least, 4),
+        significant(most, 4),
     )
 }
 
@@ -579,8 +591,8 @@ fn device_table(found: &Identification, delays: &KnownDelays) -> String {
         ),
         // Else a scene would certify as if each torque were there at once.
         (Some(passivity), Err(_)) => format!(
-            "passivity = 0.0 # nothing certifies without lag and delay: {passivity} N m s/rad once `actuator_lag` here \
-             and `output_delay` of the scene are stated\n"
+            "passivity = 0.0 # nothing certifies without lag and delay: {passivity} N m s/rad once `actuator_lag` \
+             and `encoder.age` are stated\n"
         ),
         // Else a scene would certify with all of the damping.
         (None, _) => "passivity = 0.0 # none: nothing certifies with this device\n".to_owned(),
