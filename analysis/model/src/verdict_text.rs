@@ -55,7 +55,10 @@ pub fn rows(report: &VerdictReport) -> Vec<(&'static str, String)> {
 /// The effect on the hand.
 fn felt(report: &VerdictReport) -> impl Iterator<Item = (&'static str, String)> {
     let stiffness = report.felt_stiffness.map_or_else(
-        || "none: the torque at rest does not follow from the angle".to_owned(),
+        || {
+            "none: the torque at rest does not follow from the angle, or these times have no matched coupling"
+                .to_owned()
+        },
         |felt| format!("{} N m/rad at the handle, where it is stiffest", significant(felt, 4)),
     );
     let free = report.free_damping.map(|felt| {

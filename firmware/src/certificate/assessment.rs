@@ -237,6 +237,7 @@ const fn coupling_rejection(n: &LoopIntervals, out: &Assessment) -> Rejection {
         alpha_coupled,
         delta: n.delta,
         stiffness: n.coupling,
+        is_matched: n.is_matched,
         standard: n.standard_stiffness(),
         remedies: Remedies::NONE,
     }

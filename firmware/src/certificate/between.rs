@@ -17,6 +17,9 @@
 //!
 //! Behind a softer coupling the passing values are the outside of a disk, which is not convex.
 //!
+//! Times that vary or are known in a range have several proofs, each of which is enough. Their union is not convex; but
+//! each holds for the law 0, so with a passing law the smaller parts of it pass.
+//!
 //! If updates may be missed, a linear scene must pass two such rules at once, one of them with a softer
 //! coupling: then nothing is claimed.
 //!
@@ -42,6 +45,7 @@
 //! a late wall, where the gain that solves a tick does not depend on the number. Otherwise coefficients that
 //! are rounded separately can leave a hole.
 
+use super::deviation::Deviation;
 use super::linearity::is_nonlinear;
 use super::loop_intervals::LoopIntervals;
 use crate::environment::{Canceller, Parts, Profile, Wall};
@@ -84,9 +88,8 @@ pub(super) const fn between(
     let passes = match parameter {
         Parameter::Stiffness | Parameter::Damping => is_affine_in_wall(scene, &n),
         Parameter::Residual => is_affine_in_residual(scene, &n),
-        // An amplifier's response may take at most a period.
-        Parameter::Period if !scene.latency.actuator_response.is_zero() => false,
-        Parameter::Period if n.is_at_port && n.latency.is_some() || parts.others() > 0 => false,
+        // Times in s are more of a shorter period.
+        Parameter::Period if n.latency.is_some() || parts.others() > 0 => false,
         Parameter::Period => return between_periods(scene, &n, value),
         _ => false,
     };
@@ -125,7 +128,28 @@ const fn between_sums(parts: &Parts, parameter: Parameter) -> Between {
 const fn is_affine_in_wall(scene: &Scene, n: &LoopIntervals) -> bool {
     let is_late = matches!(scene.environment.wall(), Some(wall) if wall.delay > 0);
     let is_soft = n.missed.is_some() || !n.is_standard && n.excess_compliance().hi() > 0.0;
-    (is_late || matches!(n.format, Format::F64)) && (is_nonlinear(scene) || !is_soft)
+    let is_convex =
+        is_nonlinear(scene) || !is_soft && (has_one_proof(n) || is_in_proportion(scene));
+    (is_late || matches!(n.format, Format::F64)) && is_convex
+}
+
+/// Whether one proof alone decides a linear scene: a union of convex sets is not convex.
+const fn has_one_proof(n: &LoopIntervals) -> bool {
+    match &n.latency {
+        None => n.linearity.is_zero(),
+        Some(lagging) => Deviation::is_alone(lagging, n),
+    }
+}
+
+/// Whether the law is in proportion to the wall's number that is not zero. Each proof holds for the law 0, so it also
+/// holds for a smaller part of a law for which it holds.
+const fn is_in_proportion(scene: &Scene) -> bool {
+    let parts = scene.environment.parts();
+    let is_alone = parts.count() == 1 && scene.environment.rational().is_none();
+    match scene.environment.wall() {
+        Some(wall) => is_alone && (wall.stiffness == 0.0 || wall.damping() == 0.0),
+        None => false,
+    }
 }
 
 /// Only an undelayed free mode has `T C = -be (z - 1) / z` for every coupling.

@@ -22,6 +22,14 @@ impl Deviation {
     /// The number of proofs; each alone is enough.
     pub const COUNT: usize = 3;
 
+    /// Whether at most one of the proofs covers the scene.
+    pub const fn is_alone(lagging: &Lagging, n: &LoopIntervals) -> bool {
+        let latency = &lagging.latency;
+        let has_window =
+            !latency.actuator_response.is_zero() || latency.is_filtered_beside_updates();
+        n.linearity.is_zero() && latency.total_jitter() == 0.0 && !n.misses_updates && !has_window
+    }
+
     const NONE: Self = Self { left: Interval::ONE, ripple: Interval::ZERO, response: None };
 
     /// One of the proofs; `None` if it does not cover the scene.

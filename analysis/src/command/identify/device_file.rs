@@ -3,7 +3,6 @@
 use std::f64::consts::TAU;
 use std::path::Path;
 
-use serde_json::Value as Json;
 use toml_edit::{DocumentMut, Item, TomlError, Value};
 
 use crate::command::status::CommandError;
@@ -88,12 +87,12 @@ pub fn edited(path: &Path, text: &str, numbers: &[Number]) -> Result<String, Com
 fn checked(path: &Path, counts_per_turn: f64) -> Result<String, CommandError> {
     let unreadable = |source| CommandError::Unwritable { path: path.to_owned(), source };
     let text = std::fs::read_to_string(path).map_err(unreadable)?;
-    let name = path.display().to_string();
-    if let Some(device) = file::load_json(&name)?.get("device").and_then(Json::as_str) {
+    let document: Option<DocumentMut> = text.parse().ok();
+    if let Some(device) = document.as_ref().and_then(|keys| keys.get("device")?.as_str()) {
         let why = format!("its device is that of `{device}`: name that file");
         return Err(unchanged(path, &why));
     }
-    let step = file::load_device(&name)?.transducers.encoder_step;
+    let step = file::load_device(&path.display().to_string())?.transducers.encoder_step;
     let stated = step.map(|step| (TAU / step).round());
     match stated.filter(|stated| (stated - counts_per_turn).abs() > 0.5) {
         Some(stated) => {
