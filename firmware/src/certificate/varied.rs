@@ -79,8 +79,7 @@ impl Varied<'_> {
                 return Some(digits.value());
             }
         } else if self.is_certified(last) {
-            // Only a residual has an end above.
-            return if last > nearest { Some(last) } else { None };
+            return None;
         }
         let (fails, passes) = (self.look(last), self.look(nearest));
         if fails.passes() || !passes.passes() {
