@@ -56,7 +56,8 @@ const WORKER: &[&str] = &[source!("engine.js"), source!("map_worker.js")];
 pub fn page(module: &[u8], scene: &Value) -> io::Result<String> {
     let start = json!({ "scene": scene, "version": env!("CARGO_PKG_VERSION") });
     let parts = [
-        ("/*STYLE*/", without_comments(&[STYLE])),
+        // No text of the style has such a space in it.
+        ("/*STYLE*/", without_comments(&[STYLE]).replace(": ", ":").replace(" {", "{")),
         ("/*BEGIN*/", source!("start.js").to_owned()),
         ("<!--PROGRAM-->", packed(without_comments(PROGRAM).as_bytes())?),
         ("<!--WORKER-->", packed(without_comments(WORKER).as_bytes())?),

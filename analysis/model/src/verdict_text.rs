@@ -56,7 +56,7 @@ pub fn rows(report: &VerdictReport) -> Vec<(&'static str, String)> {
 fn felt(report: &VerdictReport) -> impl Iterator<Item = (&'static str, String)> {
     let stiffness = report.felt_stiffness.map_or_else(
         || {
-            "none: the torque at rest does not follow from the angle, or these times have no matched coupling"
+            "none: the torque at rest does not follow from the angle, or no coupling exists"
                 .to_owned()
         },
         |felt| format!("{} N m/rad at the handle, where it is stiffest", significant(felt, 4)),

@@ -51,7 +51,7 @@ pub enum BuildError {
     NoBridge { board: BoardModel },
     #[error(
         "the board {board} does not read the {chip} beside its {}: the {} reads {} beside its DAC, and the {} beside \
-         its bridge, with the table [motor]",
+         its bridge, in a scene with the table [motor], or in an own copy of brushless_identify",
         match output { TorqueOutput::Bridge => "bridge", TorqueOutput::Dac => "DAC" },
         BoardModel::NucleoG474re,
         Chip::NAMES.join(", "),
