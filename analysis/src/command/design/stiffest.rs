@@ -54,6 +54,8 @@ struct Report {
     felt_stiffness: f64,
     /// Of the file as it was.
     felt_stiffness_before: Option<f64>,
+    /// The instant of the torque in s after its count, of the file as it was.
+    output_delay_before: f64,
     certified_before: bool,
     margin: Option<f64>,
     /// Of the stiffest wall that the stated friction keeps silent at rest; null if no friction is stated, or if
@@ -129,6 +131,7 @@ fn report(
         structure: found.best.structure.name(),
         felt_stiffness: found.best.felt,
         felt_stiffness_before: felt::stiffness(&file.scene),
+        output_delay_before: file.scene.latency.code_delay(file.scene.timing.period),
         certified_before: Judge::BOARD.passes(&file.scene),
         margin: verdict.margin_on_board,
         silent_stiffness: None,
@@ -198,11 +201,18 @@ fn text(
     });
     let (period, latency) = (scene.timing.period, &scene.latency);
     let rate = number(period.recip(), "Hz");
-    let delay = latency.code_delay(period);
+    let (delay, stated) = (latency.code_delay(period), report.output_delay_before);
+    let instead = match stated != 0.0 && stated != delay && latency.actuator_updates == 0 {
+        true => format!(
+            ", in place of {} in the file: what an amplifier adds is `encoder.age`",
+            number(stated * 1e6, "us")
+        ),
+        false => String::new(),
+    };
     let output = match delay == 0.0 {
         true => "latched at the next sample".to_owned(),
         false => format!("{} after the count", number(delay * 1e6, "us")),
-    };
+    } + &instead;
     let wall = scene.environment.wall().map_or_else(String::new, |wall| {
         let filter = wall.filter().map_or_else(String::new, |pole| format!(", filter {pole}"));
         let stiffness = number(wall.stiffness, "N m/rad");

@@ -48,10 +48,22 @@ impl KnownDelays {
         })
     }
 
+    /// The age for a file.
+    pub fn number(&self, latency: &Latency) -> Number {
+        let comment = match self.torque_delay {
+            Some(declared) if declared > 0.0 => format!(
+                "at 95 %, without the declared {} s of the torque: add them if it is as late in a scene",
+                significant(declared, 3)
+            ),
+            _ => "at 95 %, with any delay of the torque".to_owned(),
+        };
+        number(self.age_in_file(latency), &comment)
+    }
+
     /// The range of the age in s for a file. A delay of the torque after its instant counts as an age, because for a
     /// certificate both are the same, and the instant itself is a program's. A chip's age is that of all of its kind,
     /// of which this one may be the youngest.
-    pub fn age_in_file(&self, latency: &Latency) -> TimeRange {
+    fn age_in_file(&self, latency: &Latency) -> TimeRange {
         let [lo, hi] = latency.delay_range();
         let [least, most] =
             [(lo + self.count_delay - self.filtered).max(0.0), hi + self.count_delay];

@@ -225,9 +225,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     };
     if let Some(latency) = found.latency.ok().filter(|_| !has_bridge(&found)) {
         let path = arguments.output.as_deref().unwrap_or(Path::new("the device"));
-        let age =
-            age::number(delays.age_in_file(&latency), "at 95 %, with any delay of the torque");
-        table = device_file::edited(path, &table, &[age])?;
+        table = device_file::edited(path, &table, &[delays.number(&latency)])?;
     }
     match &arguments.output {
         // Its numbers are better than those of a fit that explains nothing.
