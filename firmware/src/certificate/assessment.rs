@@ -236,8 +236,7 @@ const fn coupling_rejection(n: &LoopIntervals, out: &Assessment) -> Rejection {
         alpha,
         alpha_coupled,
         delta: n.delta,
-        stiffness: n.coupling,
-        is_matched: n.is_matched,
+        stiffness: if n.is_matched { None } else { n.coupling },
         standard: n.standard_stiffness(),
         remedies: Remedies::NONE,
     }

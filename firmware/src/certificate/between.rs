@@ -86,7 +86,7 @@ pub(super) const fn between(
         None => {}
     }
     let passes = match parameter {
-        Parameter::Stiffness | Parameter::Damping => is_affine_in_wall(scene, &n),
+        Parameter::Stiffness | Parameter::Damping => is_affine_in_wall(scene, parts, &n),
         Parameter::Residual => is_affine_in_residual(scene, &n),
         // Times in s are more of a shorter period.
         Parameter::Period if n.latency.is_some() || parts.others() > 0 => false,
@@ -125,11 +125,11 @@ const fn between_sums(parts: &Parts, parameter: Parameter) -> Between {
     }
 }
 
-const fn is_affine_in_wall(scene: &Scene, n: &LoopIntervals) -> bool {
-    let is_late = matches!(scene.environment.wall(), Some(wall) if wall.delay > 0);
+const fn is_affine_in_wall(scene: &Scene, parts: &Parts, n: &LoopIntervals) -> bool {
+    let is_late = matches!(&parts.wall, Some(wall) if wall.delay > 0);
     let is_soft = n.missed.is_some() || !n.is_standard && n.excess_compliance().hi() > 0.0;
     let is_convex =
-        is_nonlinear(scene) || !is_soft && (has_one_proof(n) || is_in_proportion(scene));
+        is_nonlinear(scene) || !is_soft && (has_one_proof(n) || is_in_proportion(parts));
     (is_late || matches!(n.format, Format::F64)) && is_convex
 }
 
@@ -143,11 +143,9 @@ const fn has_one_proof(n: &LoopIntervals) -> bool {
 
 /// Whether the law is in proportion to the wall's number that is not zero. Each proof holds for the law 0, so it also
 /// holds for a smaller part of a law for which it holds.
-const fn is_in_proportion(scene: &Scene) -> bool {
-    let parts = scene.environment.parts();
-    let is_alone = parts.count() == 1 && scene.environment.rational().is_none();
-    match scene.environment.wall() {
-        Some(wall) => is_alone && (wall.stiffness == 0.0 || wall.damping() == 0.0),
+const fn is_in_proportion(parts: &Parts) -> bool {
+    match &parts.wall {
+        Some(wall) => parts.count() == 1 && (wall.stiffness == 0.0 || wall.damping() == 0.0),
         None => false,
     }
 }

@@ -63,9 +63,8 @@ pub enum Rejection {
         alpha: Option<Interval>,
         alpha_coupled: Option<Interval>,
         delta: Interval,
-        /// Of a matched coupling that of the first spring.
+        /// Of a spring.
         stiffness: Option<Interval>,
-        is_matched: bool,
         standard: Interval,
         remedies: Remedies,
     },
@@ -226,13 +225,10 @@ impl Rejection {
                 "with updates missed up to the worst period and torques latched the environment needs alpha = "
                 {alpha.hi()} " N m s/rad of damping, not below the " {limit.lo()}
                 " N m s/rad that device and coupling leave it"),
-            Self::Coupling {
-                alpha, alpha_coupled, delta, stiffness, is_matched, standard, ..
-            } => {
+            Self::Coupling { alpha, alpha_coupled, delta, stiffness, standard, .. } => {
                 match stiffness {
-                    _ if *is_matched => t.push("the matched coupling of these times"),
                     Some(k) => push!(t, "the coupling stiffness " {k.midpoint()} " N m/rad"),
-                    None => t.push("the rigid coupling"),
+                    None => t.push("this coupling"),
                 }
                 t.push(" does not suit this environment");
                 if let Some(alpha) = alpha {
@@ -242,11 +238,8 @@ impl Rejection {
                     push!(t, ", with the coupling alpha = " {coupled.hi()});
                 }
                 push!(t,
-                    " N m s/rad of the delta = " {delta.lo()} " N m s/rad that the device has");
-                if *is_matched {
-                    return t;
-                }
-                push!(t, "; the standard coupling is 2 delta/T = " {standard.midpoint()}
+                    " N m s/rad of the delta = " {delta.lo()}
+                    " N m s/rad that the device has; the standard coupling is 2 delta/T = " {standard.midpoint()}
                     " N m/rad");
             }
             Self::Undecided { doubt, index, limit, .. } => {
@@ -320,7 +313,6 @@ mod tests {
                     alpha_coupled: alpha,
                     delta: long,
                     stiffness: alpha,
-                    is_matched: false,
                     standard: long,
                     remedies,
                 },
