@@ -75,6 +75,10 @@ pub(super) const fn between(
 ) -> Between {
     let n = LoopIntervals::of(scene, format);
     let parts = scene.environment.parts();
+    // Times in s are more of a shorter period.
+    if matches!(parameter, Parameter::Period) && n.latency.is_some() {
+        return Between::Unknown;
+    }
     if matches!(parameter, Parameter::Anticogging) {
         // With less of it more passivity is left, for which a matched coupling is designed anew.
         let is_rigid = matches!(scene.coupling, Coupling::Rigid);
@@ -88,8 +92,7 @@ pub(super) const fn between(
     let passes = match parameter {
         Parameter::Stiffness | Parameter::Damping => is_affine_in_wall(scene, parts, &n),
         Parameter::Residual => is_affine_in_residual(scene, &n),
-        // Times in s are more of a shorter period.
-        Parameter::Period if n.latency.is_some() || parts.others() > 0 => false,
+        Parameter::Period if parts.others() > 0 => false,
         Parameter::Period => return between_periods(scene, &n, value),
         _ => false,
     };
@@ -107,7 +110,6 @@ const fn between_profiles(profile: &Profile, n: &LoopIntervals, parameter: Param
         Parameter::Stiffness | Parameter::Damping | Parameter::ProfileTorque => {
             Between::PassesDownToZero
         }
-        Parameter::Period if n.latency.is_some() => Between::Unknown,
         Parameter::Period if profile.damping() == 0.0 => Between::PassesDownToZero,
         Parameter::Period if matches!(n.format, Format::F64) => Between::Passes,
         _ => Between::Unknown,

@@ -1,6 +1,7 @@
 //! Proofs for linear scenes whose delay deviates from tick to tick.
 
 use super::loop_intervals::{Lagging, LoopIntervals};
+use crate::latency::Latency;
 use crate::passivity::interval::Interval;
 use crate::passivity::lagged::{SampledResponse, ripple_of_mixture};
 use crate::response_window::ResponseWindow;
@@ -25,9 +26,7 @@ impl Deviation {
     /// Whether at most one of the proofs covers the scene.
     pub const fn is_alone(lagging: &Lagging, n: &LoopIntervals) -> bool {
         let latency = &lagging.latency;
-        let has_window =
-            !latency.actuator_response.is_zero() || latency.is_filtered_beside_updates();
-        n.linearity.is_zero() && latency.total_jitter() == 0.0 && !n.misses_updates && !has_window
+        n.linearity.is_zero() && is_constant(latency, n) && !has_window_besides(latency)
     }
 
     const NONE: Self = Self { left: Interval::ONE, ripple: Interval::ZERO, response: None };
@@ -35,17 +34,11 @@ impl Deviation {
     /// One of the proofs; `None` if it does not cover the scene.
     pub const fn of(proof: usize, lagging: &Lagging, n: &LoopIntervals) -> Option<Self> {
         let latency = &lagging.latency;
-        if latency.total_jitter() == 0.0 && !n.misses_updates {
+        if is_constant(latency, n) {
             return match proof {
                 0 if n.linearity.is_zero() => Some(Self::NONE),
                 0 => Some(Self::through_inl(lagging, n)),
-                // The ripple of an amplifier of no known shape is that of the worst, and the window may be
-                // better. Updates beside a sensor filter are known within a window only.
-                1 if !latency.actuator_response.is_zero()
-                    || latency.is_filtered_beside_updates() =>
-                {
-                    Self::within_window(lagging, n)
-                }
+                1 if has_window_besides(latency) => Self::within_window(lagging, n),
                 _ => None,
             };
         }
@@ -103,4 +96,15 @@ impl Deviation {
         let left = Interval::ONE.sub(share);
         Self { left, ripple: h.mul(left).div(share), response: None }
     }
+}
+
+/// Whether no time deviates from tick to tick.
+const fn is_constant(latency: &Latency, n: &LoopIntervals) -> bool {
+    latency.total_jitter() == 0.0 && !n.misses_updates
+}
+
+/// Whether the window may prove more than constant times do. The ripple of an amplifier of no known shape is that of
+/// the worst, and the window may be better. Updates beside a sensor filter are known within a window only.
+const fn has_window_besides(latency: &Latency) -> bool {
+    !latency.actuator_response.is_zero() || latency.is_filtered_beside_updates()
 }

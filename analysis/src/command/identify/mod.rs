@@ -65,9 +65,8 @@ pub struct Arguments {
     pub reading: Reading,
     #[command(flatten)]
     pub answer: JsonOption,
-    /// Write the device to this file, which a scene file names: `device = "FILE.toml"` at its top; the delay
-    /// for the scene's table `servo` is a comment in it. Of a file that exists only the table `device` is
-    /// replaced; with --turns or --reference-per-rev only their numbers, in a file that exists
+    /// Write the device to this file, which a scene file names: `device = "FILE.toml"` at its top. Of a
+    /// file that exists only the table `device` and `encoder.age` are replaced; with --turns or --reference-per-rev only their numbers, in a file that exists
     #[arg(short, long, value_name = "FILE.toml")]
     pub output: Option<PathBuf>,
     #[command(flatten)]
